@@ -1,0 +1,76 @@
+// Every struct that crosses between host and device, in the C subset both compilers lay out alike: 32-bit
+// scalars and arrays of them, no padding, sizes asserted here and probed on the device by probe.cl.
+// Feeds the builders, the tracers, the file format and the tests.
+#ifndef GNOMON_SHARED_LAYOUT_H
+#define GNOMON_SHARED_LAYOUT_H
+
+#include "scalar.h"
+
+// Marks "no primitive" in a hit and "no node" in a link.
+#define GN_NONE 0xffffffffu
+
+// One triangle as the caller gives it: three corners, any unit of length, counter-clockwise seen from its front.
+typedef struct GnTriangle {
+  gn_f32 v0[3];
+  gn_f32 v1[3];
+  gn_f32 v2[3];
+} GnTriangle;
+GN_SIZE_IS(GnTriangle, 36);
+
+// One triangle in leaf order, as traversal reads it. primitive is its index in the caller's array.
+typedef struct GnLeafTriangle {
+  gn_f32 v0[3];
+  gn_u32 primitive;
+  gn_f32 v1[3];
+  gn_u32 pad0;
+  gn_f32 v2[3];
+  gn_u32 pad1;
+} GnLeafTriangle;
+GN_SIZE_IS(GnLeafTriangle, 48);
+
+// What the builder sorts: a primitive's box and its index. The centroid is never stored: lo + hi is twice it.
+typedef struct GnPrimitive {
+  gn_f32 lo[3];
+  gn_u32 index;
+  gn_f32 hi[3];
+  gn_u32 pad;
+} GnPrimitive;
+GN_SIZE_IS(GnPrimitive, 32);
+
+// One node of the binary tree. count == 0: inner, children at [first] and [first + 1].
+// count > 0: leaf, its triangles are [first, first + count) in leaf order. The root is node 0.
+typedef struct GnNode {
+  gn_f32 lo[3];
+  gn_u32 first;
+  gn_f32 hi[3];
+  gn_u32 count;
+} GnNode;
+GN_SIZE_IS(GnNode, 32);
+
+// One ray: points origin + t * direction with tmin <= t <= tmax. The direction need not have unit length.
+typedef struct GnRay {
+  gn_f32 origin[3];
+  gn_f32 tmin;
+  gn_f32 direction[3];
+  gn_f32 tmax;
+} GnRay;
+GN_SIZE_IS(GnRay, 32);
+
+// One closest hit: the point origin + t * direction = (1-u-v) v0 + u v1 + v v2 of triangle `primitive`.
+// A miss has primitive == GN_NONE, t == +inf, u == v == 0.
+typedef struct GnHit {
+  gn_f32 t;
+  gn_f32 u;
+  gn_f32 v;
+  gn_u32 primitive;
+} GnHit;
+GN_SIZE_IS(GnHit, 16);
+
+// Work one ray caused, when counters are compiled in: boxes and triangles tested.
+typedef struct GnRayCounters {
+  gn_u32 boxes;
+  gn_u32 triangles;
+} GnRayCounters;
+GN_SIZE_IS(GnRayCounters, 8);
+
+#endif

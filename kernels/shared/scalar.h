@@ -6,7 +6,7 @@
 
 #ifdef __OPENCL_VERSION__
 #pragma OPENCL FP_CONTRACT OFF
-#ifdef cl_khr_fp64
+#if defined(cl_khr_fp64) && !defined(GN_WITHOUT_FP64)
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #define GN_HAS_FP64 1
 #else
@@ -21,7 +21,11 @@ typedef uint gn_u32;
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#ifdef GN_WITHOUT_FP64  // tests compile the arithmetic of devices without double on the host
+#define GN_HAS_FP64 0
+#else
 #define GN_HAS_FP64 1
+#endif
 using gn_f32 = float;
 using gn_i32 = std::int32_t;
 using gn_u32 = std::uint32_t;

@@ -1,0 +1,268 @@
+#include "gnomon/device/build_device.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <limits>
+
+#include "gnomon/cl/launch.h"
+#include "gnomon/cl/program.h"
+#include "gnomon/device/build_plan.h"
+#include "gnomon/device/level_loop.h"
+
+namespace gnomon {
+
+namespace {
+
+constexpr std::size_t kItemsPerGroup = 64;  // of kernels with one work-item per element
+
+std::size_t rounded_up(std::size_t items) { return (items + kItemsPerGroup - 1) / kItemsPerGroup * kItemsPerGroup; }
+
+const std::vector<std::string> kSources = {"prepare.cl", "large.cl", "subtree.cl", "compact.cl"};
+
+// One build in progress: buffers, kernels, and the passes in order.
+class DeviceBuilder {
+ public:
+  DeviceBuilder(const cl::Context& context, const BuildOptions& options, const BuildPlan& plan, cl_mem triangles)
+      : context_(context), options_(options), plan_(plan), triangles_(triangles) {
+    for (cl::Buffer* buffer : {&primitives_a_, &primitives_b_, &sparse_nodes_, &inner_rank_, &rank_sums_, &status_,
+                               &chunk_bounds_, &chunk_bins_, &chunk_counts_, &chunks_, &tasks_, &first_chunk_,
+                               &children_, &order_}) {
+      *buffer = allocate(buffer->name);
+    }
+  }
+
+  DeviceBvh run(const Progress& progress) {
+    report(progress, "build: prepare", 0.0);
+    LargeNodes large;
+    std::vector<GnTask> tasks = prepare(large);
+    const double whole = plan_.count;
+    while (!tasks.empty()) {
+      double left = 0.0;
+      for (const GnTask& task : tasks) left += task.end - task.begin;
+      report(progress, "build: large nodes", 0.5 * (1.0 - left / whole));
+      tasks = divide_level(std::move(tasks), large);
+    }
+    report(progress, "build: subtrees", 0.5);
+    build_subtrees(large);
+    report(progress, "build: compact", 0.9);
+    return compact();
+  }
+
+  [[nodiscard]] const cl::StageTimes& times() const { return times_; }
+
+ private:
+  cl::Buffer allocate(const std::string& name) {
+    return context_.create_buffer(name, static_cast<std::size_t>(plan_.bytes_of(name)));
+  }
+
+  template <typename... Arguments>
+  void launch(const char* stage, const char* kernel_name, std::size_t global, std::size_t local,
+              const Arguments&... arguments) {
+    const cl::Handle<cl_kernel> kernel = context_.programs().kernel(kSources, plan_.program_options(), kernel_name);
+    cl::set_arguments(kernel.get(), arguments...);
+    times_.add(stage, cl::enqueue(context_.queue(), kernel.get(), global, local));
+  }
+
+  // One work-group per item.
+  template <typename... Arguments>
+  void launch_groups(const char* stage, const char* kernel_name, std::size_t groups, const Arguments&... arguments) {
+    launch(stage, kernel_name, groups * plan_.work_group_size, plan_.work_group_size, arguments...);
+  }
+
+  // Boxes and root bounds; the root is the first large node, or the only subtree.
+  std::vector<GnTask> prepare(LargeNodes& large) {
+    const std::uint32_t chunks = (plan_.count + plan_.chunk_size - 1) / plan_.chunk_size;
+    const std::uint32_t initial[2] = {GN_NONE, 0};
+    context_.upload_values<std::uint32_t>(status_, initial);
+    context_.fill(inner_rank_, 0);
+    launch_groups("prepare", "prepare_primitives", chunks, triangles_, primitives_a_, chunk_bounds_, status_,
+                  plan_.count, plan_.chunk_size);
+    const auto bounds = context_.download_values<GnBounds>(chunk_bounds_, 2 * static_cast<std::size_t>(chunks));
+    const std::uint32_t first_bad = context_.download_values<std::uint32_t>(status_, 1).front();
+    if (first_bad != GN_NONE) {
+      throw Error(ErrorCode::kBadScene, "triangle " + std::to_string(first_bad) +
+                                            " has a coordinate that is not finite or beyond 2^48; drop or repair it");
+    }
+    const GnTask root = root_task(bounds, plan_.count);
+    if (plan_.count > plan_.subtree_size) return {root};
+    large.roots.push_back(root);
+    return {};
+  }
+
+  std::vector<GnTask> divide_level(std::vector<GnTask> tasks, LargeNodes& large) {
+    Level level = make_level(std::move(tasks), plan_.chunk_size);
+    context_.upload_values<GnTask>(tasks_, level.tasks);
+    context_.upload_values<GnChunk>(chunks_, level.chunks);
+    context_.upload_values<std::uint32_t>(first_chunk_, level.first_chunk);
+    launch_groups("bin", "bin_chunks", level.chunks.size(), primitives_a_, primitives_b_, tasks_, chunks_, chunk_bins_,
+                  chunk_counts_);
+    launch_groups("split", "split_tasks", level.tasks.size(), tasks_, chunks_, first_chunk_, chunk_bins_,
+                  chunk_counts_, children_, options_.median_depth);
+    launch_groups("partition", "partition_chunks", level.chunks.size(), primitives_a_, primitives_b_, tasks_, chunks_,
+                  chunk_bounds_);
+    const auto children = context_.download_values<GnChildren>(children_, level.tasks.size());
+    const auto bounds = context_.download_values<GnBounds>(chunk_bounds_, 4 * level.chunks.size());
+    level.tasks = context_.download_values<GnTask>(tasks_, level.tasks.size());
+    return next_tasks(level, children, bounds, plan_.subtree_size, large);
+  }
+
+  void build_subtrees(const LargeNodes& large) {
+    const auto root_count = large.roots.size();
+    const cl::Buffer roots = context_.create_buffer("subtree_roots", root_count * sizeof(GnTask));
+    context_.upload_values<GnTask>(roots, large.roots);
+    const cl::Buffer max_depth = context_.create_buffer("max_depth", sizeof(std::uint32_t));
+    context_.fill(max_depth, 0);
+    launch_groups("subtrees", "build_subtrees", root_count, primitives_a_, primitives_b_, roots, sparse_nodes_,
+                  inner_rank_, order_, max_depth, options_.max_leaf_size, options_.median_depth,
+                  options_.cost_traversal, options_.cost_triangle);
+    if (!large.nodes.empty()) {
+      const auto count = static_cast<std::uint32_t>(large.nodes.size());
+      const cl::Buffer nodes = context_.create_buffer("large_nodes", count * sizeof(Node));
+      const cl::Buffer slots = context_.create_buffer("large_slots", count * sizeof(std::uint32_t));
+      context_.upload_values<Node>(nodes, large.nodes);
+      context_.upload_values<std::uint32_t>(slots, large.slots);
+      launch("compact", "enter_large_nodes", rounded_up(count), kItemsPerGroup, nodes, slots, sparse_nodes_,
+             inner_rank_, count);
+    }
+    depth_ = context_.download_values<std::uint32_t>(max_depth, 1).front();
+  }
+
+  DeviceBvh compact() {
+    const std::uint32_t chunks = (plan_.count + plan_.compact_chunk - 1) / plan_.compact_chunk;
+    launch("compact", "count_inner", chunks, 1, inner_rank_, rank_sums_, plan_.count, plan_.compact_chunk);
+    launch("compact", "scan_chunk_sums", 1, 1, rank_sums_, chunks);
+    launch("compact", "rank_inner", chunks, 1, inner_rank_, rank_sums_, plan_.count, plan_.compact_chunk);
+    const std::uint32_t inner = context_.download_values<std::uint32_t>(rank_sums_, 1, chunks).front();
+    DeviceBvh tree;
+    tree.triangle_count = plan_.count;
+    tree.node_count = 1 + 2 * inner;
+    tree.max_depth = depth_;
+    tree.nodes = context_.create_buffer("nodes", tree.node_count * sizeof(Node));
+    tree.leaf_triangles = allocate("leaf_triangles");
+    launch("compact", "emit_nodes", rounded_up(plan_.count), kItemsPerGroup, sparse_nodes_, inner_rank_, tree.nodes,
+           plan_.count);
+    launch("gather", "gather_triangles", rounded_up(plan_.count), kItemsPerGroup, triangles_, order_,
+           tree.leaf_triangles, plan_.count);
+    tree.order = std::move(order_);
+    return tree;
+  }
+
+  const cl::Context& context_;
+  const BuildOptions& options_;
+  const BuildPlan& plan_;
+  cl_mem triangles_;
+  cl::StageTimes times_;
+  std::uint32_t depth_ = 0;
+  cl::Buffer primitives_a_{{}, "primitives_a"}, primitives_b_{{}, "primitives_b"}, sparse_nodes_{{}, "sparse_nodes"};
+  cl::Buffer inner_rank_{{}, "inner_rank"}, rank_sums_{{}, "rank_sums"}, status_{{}, "status"};
+  cl::Buffer chunk_bounds_{{}, "chunk_bounds"}, chunk_bins_{{}, "chunk_bins"}, chunk_counts_{{}, "chunk_counts"};
+  cl::Buffer chunks_{{}, "chunks"}, tasks_{{}, "tasks"}, first_chunk_{{}, "first_chunk"}, children_{{}, "children"};
+  cl::Buffer order_{{}, "order"};
+};
+
+// The box no ray meets.
+Node empty_root() {
+  Node node{};
+  for (int k = 0; k < 3; ++k) {
+    node.lo[k] = std::numeric_limits<float>::infinity();
+    node.hi[k] = -std::numeric_limits<float>::infinity();
+  }
+  node.count = 1;
+  return node;
+}
+
+void refuse_what_does_not_fit(const cl::DeviceInfo& device, const BuildPlan& plan) {
+  std::uint64_t total = 0;
+  for (const BufferNeed& need : plan.buffers()) {
+    if (const auto reason = cl::why_not_fit(device, need.name, need.bytes)) throw Error(ErrorCode::kOutOfMemory, *reason);
+    total += need.bytes;
+  }
+  if (total > device.global_memory) {
+    throw Error(ErrorCode::kOutOfMemory, "the build's buffers need " + std::to_string(total) + " bytes together, but " +
+                                             device.name + " has " + std::to_string(device.global_memory) +
+                                             "; use a smaller scene or another device");
+  }
+}
+
+DeviceBvh build_planned(const cl::Context& context, cl_mem triangles, const BuildOptions& options,
+                        const BuildPlan& plan, BuildReport* out, const Progress& progress) {
+  DeviceBuilder builder(context, options, plan, triangles);
+  DeviceBvh tree = builder.run(progress);
+  if (out != nullptr) {
+    out->stages = builder.times().milliseconds();
+    for (const BufferNeed& need : plan.buffers()) out->scratch_bytes += need.scratch ? need.bytes : 0;
+  }
+  return tree;
+}
+
+}  // namespace
+
+DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> triangles, const BuildOptions& options,
+                       BuildReport* out, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const BuildPlan plan = plan_build(context.device(), triangles.size(), options);
+  if (triangles.empty()) return upload_bvh(context, {}, {});
+  refuse_what_does_not_fit(context.device(), plan);
+  const cl::Buffer input = context.create_buffer("triangles", triangles.size_bytes());
+  context.upload_values<Triangle>(input, triangles);
+  DeviceBvh tree = build_planned(context, input.mem.get(), options, plan, out, progress);
+  if (out != nullptr) {
+    out->total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  }
+  return tree;
+}
+
+DeviceBvh build_device(const cl::Context& context, cl_mem triangles, std::uint32_t triangle_count,
+                       const BuildOptions& options, BuildReport* out, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  const BuildPlan plan = plan_build(context.device(), triangle_count, options);
+  if (triangle_count == 0) return upload_bvh(context, {}, {});
+  std::size_t bytes = 0;
+  cl::check(clGetMemObjectInfo(triangles, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr), "clGetMemObjectInfo");
+  if (bytes / sizeof(Triangle) < triangle_count) {
+    throw Error(ErrorCode::kInvalidArgument, "the triangle buffer holds " + std::to_string(bytes) + " bytes, " +
+                                                 std::to_string(triangle_count) + " triangles need 36 each");
+  }
+  refuse_what_does_not_fit(context.device(), plan);
+  DeviceBvh tree = build_planned(context, triangles, options, plan, out, progress);
+  if (out != nullptr) {
+    out->total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  }
+  return tree;
+}
+
+Bvh download_bvh(const cl::Context& context, const DeviceBvh& tree) {
+  Bvh bvh;
+  if (tree.triangle_count == 0) return bvh;
+  bvh.nodes = context.download_values<Node>(tree.nodes, tree.node_count);
+  bvh.primitives = context.download_values<std::uint32_t>(tree.order, tree.triangle_count);
+  return bvh;
+}
+
+DeviceBvh upload_bvh(const cl::Context& context, const Bvh& bvh, std::span<const Triangle> triangles) {
+  DeviceBvh tree;
+  tree.triangle_count = static_cast<std::uint32_t>(bvh.primitives.size());
+  tree.node_count = static_cast<std::uint32_t>(std::max<std::size_t>(1, bvh.nodes.size()));
+  tree.max_depth = stats_of(bvh, {}).max_depth;
+  std::vector<GnLeafTriangle> leaves;
+  leaves.reserve(bvh.primitives.size());
+  for (const std::uint32_t primitive : bvh.primitives) {
+    GnLeafTriangle leaf{};
+    std::memcpy(leaf.v0, triangles[primitive].v0, sizeof leaf.v0);
+    std::memcpy(leaf.v1, triangles[primitive].v1, sizeof leaf.v1);
+    std::memcpy(leaf.v2, triangles[primitive].v2, sizeof leaf.v2);
+    leaf.primitive = primitive;
+    leaves.push_back(leaf);
+  }
+  const std::vector<Node> nodes = bvh.nodes.empty() ? std::vector<Node>{empty_root()} : bvh.nodes;
+  tree.nodes = context.create_buffer("nodes", nodes.size() * sizeof(Node));
+  tree.order = context.create_buffer("order", bvh.primitives.size() * sizeof(std::uint32_t));
+  tree.leaf_triangles = context.create_buffer("leaf_triangles", leaves.size() * sizeof(GnLeafTriangle));
+  context.upload_values<Node>(tree.nodes, nodes);
+  context.upload_values<std::uint32_t>(tree.order, bvh.primitives);
+  context.upload_values<GnLeafTriangle>(tree.leaf_triangles, leaves);
+  return tree;
+}
+
+}  // namespace gnomon

@@ -1,0 +1,93 @@
+#include "gnomon/device/build_plan.h"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "gnomon/shared/build_layout.h"
+
+namespace gnomon {
+
+namespace {
+
+constexpr std::uint32_t ceil_div(std::uint64_t a, std::uint64_t b) { return static_cast<std::uint32_t>((a + b - 1) / b); }
+
+// Enough subtrees that every compute unit gets several, none so large that it leaves the cache.
+std::uint32_t serial_subtree_size(const cl::DeviceInfo& device, std::uint64_t count) {
+  const std::uint64_t share = count / (8ULL * std::max(1U, device.compute_units));
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(share, 1024, 16384));
+}
+
+}  // namespace
+
+std::string BuildPlan::program_options() const {
+  return "-DGN_WGS=" + std::to_string(work_group_size) + " -DGN_BINS=" + std::to_string(bins);
+}
+
+std::vector<BufferNeed> BuildPlan::buffers() const {
+  const std::uint64_t n = std::max(1U, count);
+  const std::uint64_t bins_per_chunk = 3ULL * bins;
+  // In each of at most 64 + 32 levels every large node has at most two small children.
+  const std::uint64_t max_roots = std::min<std::uint64_t>(n, 192ULL * max_tasks + 1);
+  return {
+      {"primitives_a", n * sizeof(GnPrimitive), true},
+      {"primitives_b", n * sizeof(GnPrimitive), true},
+      {"sparse_nodes", 2 * n * sizeof(GnNode), true},
+      {"inner_rank", n * sizeof(std::uint32_t), true},
+      {"rank_sums", (ceil_div(n, compact_chunk) + 1ULL) * sizeof(std::uint32_t), true},
+      {"status", 2 * sizeof(std::uint32_t), true},
+      {"chunk_bounds", 4ULL * std::max(max_chunks, ceil_div(n, chunk_size)) * sizeof(GnBounds), true},
+      {"chunk_bins", max_chunks * bins_per_chunk * sizeof(GnBin), true},
+      {"chunk_counts", max_chunks * bins_per_chunk * sizeof(std::uint32_t), true},
+      {"chunks", std::uint64_t{max_chunks} * sizeof(GnChunk), true},
+      {"tasks", std::uint64_t{max_tasks} * sizeof(GnTask), true},
+      {"first_chunk", (max_tasks + 1ULL) * sizeof(std::uint32_t), true},
+      {"children", std::uint64_t{max_tasks} * sizeof(GnChildren), true},
+      {"subtree_roots", max_roots * sizeof(GnTask), true},
+      {"triangles", n * sizeof(Triangle), true},
+      {"nodes", 2 * n * sizeof(GnNode), false},
+      {"order", n * sizeof(std::uint32_t), false},
+      {"leaf_triangles", n * sizeof(GnLeafTriangle), false},
+  };
+}
+
+std::uint64_t BuildPlan::bytes_of(const std::string& name) const {
+  for (const BufferNeed& need : buffers()) {
+    if (need.name == name) return need.bytes;
+  }
+  return 0;
+}
+
+BuildPlan plan_build(const cl::DeviceInfo& device, std::uint64_t count, const BuildOptions& options) {
+  options.check();
+  if (count > std::numeric_limits<std::int32_t>::max()) {
+    throw Error(ErrorCode::kOutOfMemory,
+                std::to_string(count) + " triangles: at most 2147483647 can be indexed; split the scene");
+  }
+  BuildPlan plan;
+  plan.count = static_cast<std::uint32_t>(count);
+  plan.bins = options.bins;
+  const auto widest = static_cast<std::uint32_t>(std::bit_floor(std::min<std::uint64_t>(device.max_work_group, 256)));
+  const std::uint32_t wanted = options.work_group_size != 0 ? options.work_group_size : device.is_cpu ? 1 : 128;
+  if (options.work_group_size > widest) {
+    throw Error(ErrorCode::kInvalidArgument, "work_group_size " + std::to_string(options.work_group_size) + ", but " +
+                                                 device.name + " allows at most " + std::to_string(widest));
+  }
+  plan.work_group_size = std::min(wanted, widest);
+  const bool serial = plan.work_group_size == 1;
+  const std::uint32_t subtree = serial ? serial_subtree_size(device, count) : 1024;
+  // Large nodes must hold more than a leaf may, so that they always divide.
+  plan.subtree_size = std::max(options.subtree_size != 0 ? options.subtree_size : subtree, options.max_leaf_size);
+  plan.chunk_size = options.chunk_size != 0 ? options.chunk_size : serial ? 8192 : 2048;
+  plan.compact_chunk = serial ? 4096 : 512;
+  plan.max_tasks = plan.count / plan.subtree_size + 1;
+  plan.max_chunks = plan.count / plan.chunk_size + plan.max_tasks + 1;
+  return plan;
+}
+
+std::vector<BufferNeed> build_memory(const cl::DeviceInfo& device, std::uint64_t triangle_count,
+                                     const BuildOptions& options) {
+  return plan_build(device, triangle_count, options).buffers();
+}
+
+}  // namespace gnomon

@@ -1,0 +1,111 @@
+#include "gnomon/device/trace_device.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "gnomon/cl/launch.h"
+#include "gnomon/cl/program.h"
+
+namespace gnomon {
+
+namespace {
+
+// Rays per launch: large enough to fill any device, small enough for its buffers and for prompt cancelling.
+constexpr std::size_t kBatch = 1U << 20U;
+
+// The stack a traversal needs: every level leaves at most one node waiting. A few sizes only, so that trees share
+// compiled programs.
+std::uint32_t stack_size_for(std::uint32_t max_depth) { return (max_depth + 1 + 31) / 32 * 32; }
+
+double event_ms(const cl::Handle<cl_event>& event) {
+  cl_ulong start = 0;
+  cl_ulong end = 0;
+  if (clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) != CL_SUCCESS ||
+      clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) != CL_SUCCESS) {
+    return 0.0;
+  }
+  return static_cast<double>(end - start) * 1e-6;
+}
+
+}  // namespace
+
+Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options)
+    : context_(context), tree_(tree), options_(options) {
+  if (!std::has_single_bit(options.work_group_size)) {
+    throw Error(ErrorCode::kInvalidArgument, "trace work_group_size must be a power of two");
+  }
+  const auto widest = std::bit_floor(context.device().max_work_group);
+  options_.work_group_size = static_cast<std::uint32_t>(std::min<std::uint64_t>(options.work_group_size, widest));
+  const std::string program = "-DGN_STACK_SIZE=" + std::to_string(stack_size_for(tree.max_depth)) +
+                              " -DGN_COUNTERS=" + (options.counters ? "1" : "0");
+  closest_ = context.programs().kernel({"trace.cl"}, program, "trace_closest");
+  any_ = context.programs().kernel({"trace.cl"}, program, "trace_any");
+  invalid_ = context.create_buffer("invalid_rays", sizeof(std::uint32_t));
+  no_counters_ = context.create_buffer("no_counters", sizeof(GnRayCounters));
+  context.fill(invalid_, 0);
+}
+
+cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, cl_mem rays, cl_mem out, cl_mem counters,
+                                     std::uint32_t count, std::span<const cl_event> wait_for) const {
+  cl::set_arguments(kernel.get(), tree_.nodes, tree_.leaf_triangles, rays, out, invalid_, counters, count);
+  const std::size_t local = options_.work_group_size;
+  const std::size_t global = (std::max(count, 1U) + local - 1) / local * local;
+  return cl::enqueue(context_.queue(), kernel.get(), global, local, wait_for);
+}
+
+cl::Handle<cl_event> Tracer::enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
+                                             std::span<const cl_event> wait_for) const {
+  if (options_.counters) throw Error(ErrorCode::kInvalidArgument, "a counting tracer cannot only enqueue");
+  return enqueue(closest_, rays, hits, no_counters_.mem.get(), count, wait_for);
+}
+
+cl::Handle<cl_event> Tracer::enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
+                                         std::span<const cl_event> wait_for) const {
+  if (options_.counters) throw Error(ErrorCode::kInvalidArgument, "a counting tracer cannot only enqueue");
+  return enqueue(any_, rays, occluded, no_counters_.mem.get(), count, wait_for);
+}
+
+template <typename Answer>
+void Tracer::trace_all(const cl::Handle<cl_kernel>& kernel, std::span<const Ray> rays, std::vector<Answer>& answers,
+                       TraceResult& result, const Progress& progress) const {
+  answers.resize(rays.size());
+  if (options_.counters) result.counters.resize(rays.size());
+  const std::size_t batch = std::min(kBatch, std::max<std::size_t>(1, rays.size()));
+  const cl::Buffer ray_buffer = context_.create_buffer("rays", batch * sizeof(Ray));
+  const cl::Buffer answer_buffer = context_.create_buffer("answers", batch * sizeof(Answer));
+  const cl::Buffer counter_buffer =
+      context_.create_buffer("counters", options_.counters ? batch * sizeof(GnRayCounters) : 0);
+  const std::uint64_t invalid_before = invalid_rays();
+  for (std::size_t first = 0; first < rays.size(); first += batch) {
+    report(progress, "trace", static_cast<double>(first) / static_cast<double>(rays.size()));
+    const std::size_t count = std::min(batch, rays.size() - first);
+    context_.upload_values<Ray>(ray_buffer, rays.subspan(first, count));
+    const auto event = enqueue(kernel, ray_buffer.mem.get(), answer_buffer.mem.get(), counter_buffer.mem.get(),
+                               static_cast<std::uint32_t>(count), {});
+    cl::wait(event);
+    result.kernel_ms += event_ms(event);
+    context_.download(answer_buffer, std::as_writable_bytes(std::span(answers).subspan(first, count)));
+    if (options_.counters) {
+      context_.download(counter_buffer, std::as_writable_bytes(std::span(result.counters).subspan(first, count)));
+    }
+  }
+  result.invalid_rays = invalid_rays() - invalid_before;
+}
+
+TraceResult Tracer::closest(std::span<const Ray> rays, const Progress& progress) const {
+  TraceResult result;
+  trace_all(closest_, rays, result.hits, result, progress);
+  return result;
+}
+
+TraceResult Tracer::any(std::span<const Ray> rays, const Progress& progress) const {
+  TraceResult result;
+  trace_all(any_, rays, result.occluded, result, progress);
+  return result;
+}
+
+std::uint64_t Tracer::invalid_rays() const {
+  return context_.download_values<std::uint32_t>(invalid_, 1).front();
+}
+
+}  // namespace gnomon

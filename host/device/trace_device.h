@@ -1,0 +1,69 @@
+// Tracing batches of rays through a tree on a device. Not for making rays or judging hits. Feeds the command line, the
+// renderer, benches. Both ways to call it: with host memory (blocking, any batch size), or with the caller's
+// buffers (only enqueues, returns an event).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gnomon/base/progress.h"
+#include "gnomon/cl/context.h"
+#include "gnomon/device/build_device.h"
+
+namespace gnomon {
+
+using Ray = GnRay;
+using Hit = GnHit;
+
+struct TraceOptions {
+  bool counters = false;               // also count boxes and triangles per ray; slower
+  std::uint32_t work_group_size = 64;  // power of two up to the device's limit
+};
+
+// Answers of a batch. One of hits and occluded is filled, by the call made.
+struct TraceResult {
+  std::vector<Hit> hits;                  // closest(): one per ray
+  std::vector<std::uint32_t> occluded;    // any(): 1 or 0 per ray
+  std::vector<GnRayCounters> counters;    // when asked for
+  std::uint64_t invalid_rays = 0;         // NaN, infinite origin or zero direction: they miss
+  double kernel_ms = 0.0;                 // device time; 0 without profiling
+};
+
+// Holds the kernels for one tree. The context and the tree must outlive it.
+class Tracer {
+ public:
+  // Throws Error: kDevice, kInvalidArgument.
+  Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options = {});
+
+  // Blocking. Throws Error: kOutOfMemory, kDevice, kCancelled.
+  [[nodiscard]] TraceResult closest(std::span<const Ray> rays, const Progress& progress = {}) const;
+  [[nodiscard]] TraceResult any(std::span<const Ray> rays, const Progress& progress = {}) const;
+
+  // Enqueue on the context's queue and return: rays holds `count` GnRay; hits receives `count` GnHit, occluded `count`
+  // uint32. Waits for the given events on the device. Options' counters are not available this way.
+  [[nodiscard]] cl::Handle<cl_event> enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
+                                                     std::span<const cl_event> wait_for = {}) const;
+  [[nodiscard]] cl::Handle<cl_event> enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
+                                                 std::span<const cl_event> wait_for = {}) const;
+  // Rays so far that were not traceable, over all calls. Blocks until earlier launches are done.
+  [[nodiscard]] std::uint64_t invalid_rays() const;
+
+ private:
+  [[nodiscard]] cl::Handle<cl_event> enqueue(const cl::Handle<cl_kernel>& kernel, cl_mem rays, cl_mem out,
+                                             cl_mem counters, std::uint32_t count,
+                                             std::span<const cl_event> wait_for) const;
+  template <typename Answer>
+  void trace_all(const cl::Handle<cl_kernel>& kernel, std::span<const Ray> rays, std::vector<Answer>& answers,
+                 TraceResult& result, const Progress& progress) const;
+
+  const cl::Context& context_;
+  const DeviceBvh& tree_;
+  TraceOptions options_;
+  cl::Handle<cl_kernel> closest_;
+  cl::Handle<cl_kernel> any_;
+  cl::Buffer invalid_;
+  cl::Buffer no_counters_;
+};
+
+}  // namespace gnomon

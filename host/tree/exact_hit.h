@@ -1,0 +1,25 @@
+// Comparisons of hit distances that must not be decided by rounding: against the ray's range, and with one
+// another. The distances themselves come from exact_intersect (oracle.h). Feeds the oracle and the judge.
+#pragma once
+
+#include "gnomon/tree/oracle.h"
+
+namespace gnomon {
+
+// One triangle that a ray's line meets, with what exact_intersect said of it.
+struct FoundHit {
+  const Triangle* triangle = nullptr;
+  ExactHit hit;
+};
+
+// A ray with finite origin and direction, a direction that is not zero and no NaN in its range; others miss
+// everything.
+[[nodiscard]] bool is_traceable(const Ray& ray);
+
+// Whether tmin <= t <= tmax, decided for the exact t.
+[[nodiscard]] bool in_range(const Ray& ray, const FoundHit& found);
+
+// Whether a's exact t is smaller than b's, both on the same ray.
+[[nodiscard]] bool nearer(const Ray& ray, const FoundHit& a, const FoundHit& b);
+
+}  // namespace gnomon

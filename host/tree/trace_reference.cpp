@@ -1,0 +1,106 @@
+#include "gnomon/tree/trace_reference.h"
+
+#include <limits>
+
+#include "gnomon/shared/hit_math.h"
+
+namespace gnomon {
+
+namespace {
+
+struct Waiting {
+  std::uint32_t node;
+  float entry;
+};
+
+class Walk {
+ public:
+  Walk(const Bvh& bvh, std::span<const Triangle> triangles, const Ray& ray, bool any_hit)
+      : bvh_(bvh), triangles_(triangles), ray_(ray), any_hit_(any_hit), frame_(gn_ray_frame(&ray)) {
+    limit_ = gn_slab_limit(ray.tmax);
+  }
+
+  void run() {
+    if (bvh_.nodes.empty()) return;
+    std::vector<Waiting> waiting;
+    if (!(entry_of(0) < GN_INFINITY)) return;
+    waiting.push_back({0, ray_.tmin});
+    while (!waiting.empty()) {
+      const Waiting next = waiting.back();
+      waiting.pop_back();
+      if (next.entry > limit_) continue;
+      const Node& node = bvh_.nodes[next.node];
+      if (node.count > 0) {
+        if (test_leaf(node)) return;
+      } else {
+        push_children(node, waiting);
+      }
+    }
+  }
+
+  Hit best{std::numeric_limits<float>::infinity(), 0.0F, 0.0F, GN_NONE};
+  GnRayCounters counters{0, 0};
+
+ private:
+  float entry_of(std::uint32_t index) {
+    counters.boxes += 1;
+    const Node& node = bvh_.nodes[index];
+    return gn_box_entry(&frame_, node.lo, node.hi, ray_.tmin, limit_);
+  }
+
+  // The nearer child is tested next; of equals the left one.
+  void push_children(const Node& node, std::vector<Waiting>& waiting) {
+    const Waiting left{node.first, entry_of(node.first)};
+    const Waiting right{node.first + 1, entry_of(node.first + 1)};
+    const bool left_first = left.entry <= right.entry;
+    for (const Waiting& child : {left_first ? right : left, left_first ? left : right}) {
+      if (child.entry < GN_INFINITY) waiting.push_back(child);
+    }
+  }
+
+  // True when the walk is over.
+  bool test_leaf(const Node& leaf) {
+    for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+      const std::uint32_t primitive = bvh_.primitives[i];
+      const Triangle& triangle = triangles_[primitive];
+      Hit hit{0.0F, 0.0F, 0.0F, primitive};
+      counters.triangles += 1;
+      if (gn_triangle_hit(&frame_, triangle.v0, triangle.v1, triangle.v2, &hit) == 0) continue;
+      if (!(hit.t >= ray_.tmin && hit.t <= ray_.tmax)) continue;
+      if (best.primitive != GN_NONE && gn_hit_is_nearer(&hit, &best) == 0) continue;
+      best = hit;
+      limit_ = gn_slab_limit(hit.t);
+      if (any_hit_) return true;
+    }
+    return false;
+  }
+
+  const Bvh& bvh_;
+  std::span<const Triangle> triangles_;
+  const Ray& ray_;
+  bool any_hit_;
+  GnRayFrame frame_;
+  float limit_ = 0.0F;
+};
+
+}  // namespace
+
+ReferenceTrace trace_reference(const Bvh& bvh, std::span<const Triangle> triangles, std::span<const Ray> rays,
+                               bool any_hit) {
+  ReferenceTrace out;
+  out.hits.reserve(rays.size());
+  out.counters.reserve(rays.size());
+  for (const Ray& ray : rays) {
+    Walk walk(bvh, triangles, ray, any_hit);
+    if (gn_ray_is_valid(&ray) != 0) {
+      walk.run();
+    } else {
+      out.invalid_rays += 1;
+    }
+    out.hits.push_back(walk.best);
+    out.counters.push_back(walk.counters);
+  }
+  return out;
+}
+
+}  // namespace gnomon

@@ -1,0 +1,114 @@
+// The stable partition of a range: left parts keep their order, right parts keep theirs, so leaf order depends on
+// neither chunks nor work-group size. Device only. Feeds partition.cl and subtree.cl.
+#ifndef GNOMON_PARTITION_H
+#define GNOMON_PARTITION_H
+
+#include "bin.h"
+
+// Which side of a task's split a primitive is on.
+typedef struct GnSide {
+  GnBinning binning;
+  uint axis;   // GN_NONE: halve by position
+  uint plane;
+  uint middle; // first index of the right half when halving
+} GnSide;
+
+static inline GnSide side_of(const GnTask* task, GnBinning binning) {
+  GnSide side;
+  side.binning = binning;
+  side.axis = task->axis;
+  side.plane = task->plane;
+  side.middle = task->begin + task->left_count;
+  return side;
+}
+
+static inline uint goes_left(float8 primitive, uint index, GnSide side) {
+  const uint3 place = bins_of(primitive, side.binning);
+  const uint bin = side.axis == 0u ? place.x : side.axis == 1u ? place.y : place.z;
+  return side.axis == GN_NONE ? index < side.middle : bin <= side.plane;
+}
+
+// Bounds of doubled centroids of the two sides.
+typedef struct GnTwoBounds {
+  GnBoxPair left;
+  GnBoxPair right;
+} GnTwoBounds;
+
+static inline void grow_side(GnTwoBounds* bounds, float8 primitive, uint left) {
+  const float4 c = primitive.lo + primitive.hi;
+  const int4 is_left = (int4)(left ? -1 : 0);
+  bounds->left.lo = select(bounds->left.lo, GN_VMIN(c, bounds->left.lo), is_left);
+  bounds->left.hi = select(bounds->left.hi, GN_VMAX(c, bounds->left.hi), is_left);
+  bounds->right.lo = select(GN_VMIN(c, bounds->right.lo), bounds->right.lo, is_left);
+  bounds->right.hi = select(GN_VMAX(c, bounds->right.hi), bounds->right.hi, is_left);
+}
+
+#if GN_WGS != 1
+// Inclusive prefix sum over the work-group (Hillis & Steele 1986); scan: GN_WGS local words.
+static inline uint group_prefix_sum(uint value, __local uint* scan) {
+  uint step;
+  scan[GN_LOCAL_ID] = value;
+  GN_GROUP_BARRIER();
+  for (step = 1u; step < GN_WGS; step <<= 1) {
+    const uint add = GN_LOCAL_ID >= step ? scan[GN_LOCAL_ID - step] : 0u;
+    GN_GROUP_BARRIER();
+    scan[GN_LOCAL_ID] += add;
+    GN_GROUP_BARRIER();
+  }
+  return scan[GN_LOCAL_ID];
+}
+#endif
+
+// Moves [begin, end) of `from` to left_at... and right_at... of `to`; returns the sides' centroid bounds on every
+// work-item. scan: GN_WGS local words, keys: 6 local ints.
+static inline GnTwoBounds partition_range(__global const float8* from, __global float8* to, uint begin, uint end,
+                                          uint left_at, uint right_at, GnSide side, __local uint* scan,
+                                          __local int* keys) {
+  GnTwoBounds bounds;
+  uint i;
+  bounds.left = empty_pair();
+  bounds.right = empty_pair();
+#if GN_WGS == 1
+  for (i = begin; i < end; ++i) {
+    const float8 primitive = from[i];
+    const uint left = goes_left(primitive, i, side);
+    to[left ? left_at : right_at] = primitive;
+    left_at += left;
+    right_at += 1u - left;
+    grow_side(&bounds, primitive, left);
+  }
+#else
+  for (i = begin; i < end; i += GN_WGS) {  // the same trips for every work-item: barriers stand inside
+    const uint index = i + GN_LOCAL_ID;
+    const uint inside = index < end ? 1u : 0u;
+    const float8 primitive = from[inside ? index : begin];
+    const uint left = inside ? goes_left(primitive, index, side) : 0u;
+    const uint lefts = group_prefix_sum(left, scan);
+    const uint all_lefts = scan[GN_WGS - 1u];
+    if (inside) {
+      to[left ? left_at + lefts - 1u : right_at + GN_LOCAL_ID - lefts] = primitive;
+      grow_side(&bounds, primitive, left);
+    }
+    left_at += all_lefts;
+    right_at += min((uint)GN_WGS, end - i) - all_lefts;
+    GN_GROUP_BARRIER();
+  }
+  bounds.left = group_union(bounds.left, keys);
+  bounds.right = group_union(bounds.right, keys);
+#endif
+  return bounds;
+}
+
+// Union of the boxes of [begin, end), on every work-item: what bins tell for free, for nodes halved without bins.
+static inline GnBoxPair box_of_range(__global const float8* primitives, uint begin, uint end, __local int* keys) {
+  GnBoxPair box = empty_pair();
+  uint i;
+  for (i = begin + GN_LOCAL_ID; i < end; i += GN_WGS) {
+    const float8 primitive = primitives[i];
+    box.lo = GN_VMIN(primitive.lo, box.lo);
+    box.hi = GN_VMAX(primitive.hi, box.hi);
+  }
+  return group_union(box, keys);
+}
+
+#endif

@@ -1,0 +1,219 @@
+// Ray against box and ray against triangle, for both compilers. The box test is conservative (it never rejects a box
+// the exact ray meets) and NaN-safe. The triangle test decides hit or miss exactly: a float filter answers almost
+// always, wide and expansion arithmetic answer the rest, so shared edges and vertices never leak and no epsilon
+// exists. On a device without fp64 what pairs of floats cannot decide counts as inside: still nothing lost, but a hit
+// may then lie outside its triangle by 2^-40 of the distance. Not for trees (traversal) or double-precision judging (oracle).
+// Sources: Woop, Benthin, Wald 2013 (shear); Ize 2013 (conservative slabs).
+#ifndef GNOMON_SHARED_HIT_MATH_H
+#define GNOMON_SHARED_HIT_MATH_H
+
+#include "build_layout.h"
+#include "exact_math.h"
+#include "wide_math.h"
+
+// What is computed once per ray.
+typedef struct GnRayFrame {
+  gn_f32 origin[3];
+  gn_f32 direction[3];
+  gn_f32 inverse[3];  // 1 / direction; +-inf for zero components
+  gn_f32 shear_x;     // direction[kx] / direction[kz]
+  gn_f32 shear_y;
+  gn_u32 kx, ky, kz;  // kz: the axis of the largest direction component
+} GnRayFrame;
+
+GN_INLINE int gn_is_finite(gn_f32 x) { return (gn_bits_of(x) & 0x7f800000u) != 0x7f800000u; }
+
+// A ray we can trace: finite origin and direction, direction not zero, a range that is not NaN.
+GN_INLINE int gn_ray_is_valid(const GnRay* ray) {
+  int k, nonzero = 0;
+  for (k = 0; k < 3; ++k) {
+    if (!gn_is_finite(ray->origin[k]) || !gn_is_finite(ray->direction[k])) return 0;
+    nonzero |= ray->direction[k] != 0.0f;
+  }
+  return nonzero && ray->tmin == ray->tmin && ray->tmax == ray->tmax;
+}
+
+GN_INLINE GnRayFrame gn_ray_frame(const GnRay* ray) {
+  GnRayFrame frame;
+  int k;
+  for (k = 0; k < 3; ++k) {
+    frame.origin[k] = ray->origin[k];
+    frame.direction[k] = ray->direction[k];
+    frame.inverse[k] = 1.0f / ray->direction[k];
+  }
+  frame.kz = gn_abs(ray->direction[1]) > gn_abs(ray->direction[0]) ? 1u : 0u;
+  if (gn_abs(ray->direction[2]) > gn_abs(ray->direction[frame.kz])) frame.kz = 2u;
+  frame.kx = frame.kz == 2u ? 0u : frame.kz + 1u;
+  frame.ky = frame.kx == 2u ? 0u : frame.kx + 1u;
+  frame.shear_x = ray->direction[frame.kx] / ray->direction[frame.kz];
+  frame.shear_y = ray->direction[frame.ky] / ray->direction[frame.kz];
+  return frame;
+}
+
+// Twice the relative error a slab distance can have (subtraction 1/2 ulp, reciprocal 2.5 ulp, product 1/2 ulp, on
+// near and on far: 15 x 2^-24), rounded up to 2^-19.
+#define GN_SLAB_SLACK 1.9073486e-06f
+
+// The largest parameter at which a box still matters when the nearest hit so far, or tmax, is t. Multiplies, so that
+// infinities stay themselves.
+GN_INLINE gn_f32 gn_slab_limit(gn_f32 t) { return t * (t < 0.0f ? 1.0f - GN_SLAB_SLACK : 1.0f + GN_SLAB_SLACK); }
+
+// Where the ray enters the box, or +inf if it misses it within [tmin, limit]. limit comes from gn_slab_limit.
+// 0 * inf (a ray in a face's plane) gives NaN, which loses every comparison: that slab then bounds nothing.
+GN_INLINE gn_f32 gn_box_entry(const GnRayFrame* ray, const gn_f32* lo, const gn_f32* hi, gn_f32 tmin, gn_f32 limit) {
+  gn_f32 near = tmin, far = GN_INFINITY;
+  int k;
+  for (k = 0; k < 3; ++k) {
+    const int backwards = ray->inverse[k] < 0.0f;
+    const gn_f32 a = ((backwards ? hi[k] : lo[k]) - ray->origin[k]) * ray->inverse[k];
+    const gn_f32 b = ((backwards ? lo[k] : hi[k]) - ray->origin[k]) * ray->inverse[k];
+    near = gn_max(a, near);
+    far = gn_min(b, far);
+  }
+  far = gn_min(gn_slab_limit(far), limit);
+  return near <= far ? near : GN_INFINITY;
+}
+
+// Signs of the three edge functions, or a verdict without them: 1 certainly inside, 0 certainly outside, -1 unknown.
+// With z the largest distance along the ray's main axis, p the largest sheared coordinate and e = 2^-24, a sheared
+// coordinate is off by at most e(2p + 8z), an edge function by 12 e p^2 + 32 e p z + 128 e^2 z^2. Replacing p by
+// q = p + 2^-20 z makes 40 e q (q + z) an upper bound; 1e-36 covers underflow.
+GN_INLINE int gn_triangle_filter(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2) {
+  const gn_u32 kx = ray->kx, ky = ray->ky, kz = ray->kz;
+  const gn_f32 az = v0[kz] - ray->origin[kz];
+  const gn_f32 bz = v1[kz] - ray->origin[kz];
+  const gn_f32 cz = v2[kz] - ray->origin[kz];
+  const gn_f32 ax = (v0[kx] - ray->origin[kx]) - ray->shear_x * az;
+  const gn_f32 ay = (v0[ky] - ray->origin[ky]) - ray->shear_y * az;
+  const gn_f32 bx = (v1[kx] - ray->origin[kx]) - ray->shear_x * bz;
+  const gn_f32 by = (v1[ky] - ray->origin[ky]) - ray->shear_y * bz;
+  const gn_f32 cx = (v2[kx] - ray->origin[kx]) - ray->shear_x * cz;
+  const gn_f32 cy = (v2[ky] - ray->origin[ky]) - ray->shear_y * cz;
+  const gn_f32 u = cx * by - cy * bx;
+  const gn_f32 v = ax * cy - ay * cx;
+  const gn_f32 w = bx * ay - by * ax;
+  const gn_f32 z = gn_max(gn_max(gn_abs(az), gn_abs(bz)), gn_abs(cz));
+  const gn_f32 px = gn_max(gn_max(gn_abs(ax), gn_abs(bx)), gn_abs(cx));
+  const gn_f32 py = gn_max(gn_max(gn_abs(ay), gn_abs(by)), gn_abs(cy));
+  const gn_f32 q = gn_max(px, py) + 9.5367432e-07f * z;
+  const gn_f32 bound = 2.3841858e-06f * q * (q + z) + 1e-36f;
+  const int positive = (u > bound) + (v > bound) + (w > bound);
+  const int negative = (u < -bound) + (v < -bound) + (w < -bound);
+  if (positive > 0 && negative > 0) return 0;
+  if (positive == 3 || negative == 3) return 1;
+  return -1;
+}
+
+// det(d, a, b) and its permanent, the same sum of magnitudes.
+GN_INLINE GnWide gn_wide_determinant(const gn_f32* d, const GnWide* a, const GnWide* b, GnWide* permanent) {
+  GnWide sum = gn_wide_of(0.0f);
+  int i;
+  *permanent = sum;
+  for (i = 0; i < 3; ++i) {
+    const int j = i == 2 ? 0 : i + 1;
+    const int k = i == 0 ? 2 : i - 1;
+    const GnWide plus = gn_wide_multiply(a[j], b[k]);
+    const GnWide minus = gn_wide_multiply(a[k], b[j]);
+    const GnWide sizes = gn_wide_add(gn_wide_abs(plus), gn_wide_abs(minus));
+    sum = gn_wide_add(sum, gn_wide_scale(gn_wide_subtract(plus, minus), d[i]));
+    *permanent = gn_wide_add(*permanent, gn_wide_scale(sizes, gn_abs(d[i])));
+  }
+  return sum;
+}
+
+// Sign of det(d, a - o, b - o) where wide arithmetic cannot tell: found exactly where the device has double. Elsewhere
+// 0, which *open marks as "either sign" unless the value itself came out as zero.
+GN_INLINE int gn_undecided_edge_sign(const GnRayFrame* ray, const gn_f32* a, const gn_f32* b, GnWide value,
+                                     int* open) {
+#if GN_HAS_FP64
+  (void)value;
+  (void)open;
+  return gn_exact_edge_sign(ray->direction, ray->origin, a, b);
+#else
+  (void)ray;
+  (void)a;
+  (void)b;
+  *open |= gn_wide_sign(value) != 0;
+  return 0;
+#endif
+}
+
+// Whether the ray meets the triangle, from the edges' determinants (weights) and their permanents. The three signs
+// must agree; zeros (the ray meets an edge or corner) agree with both; a ray in the triangle's plane, where all are
+// zero, does not hit.
+GN_INLINE int gn_signs_agree(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2,
+                             const GnWide* weights, const GnWide* permanents) {
+  const gn_f32* corner[3];
+  int i, positive = 0, negative = 0, open = 0;
+  corner[0] = v0;
+  corner[1] = v1;
+  corner[2] = v2;
+  for (i = 0; i < 3; ++i) {
+    const int sign =
+        gn_wide_is_certain(weights[i], permanents[i])
+            ? gn_wide_sign(weights[i])
+            : gn_undecided_edge_sign(ray, corner[i == 2 ? 0 : i + 1], corner[i == 0 ? 2 : i - 1], weights[i], &open);
+    positive |= sign > 0;
+    negative |= sign < 0;
+  }
+  return !(positive && negative) && (positive || negative || open);
+}
+
+// Fills t, u, v from the edges' determinants. t is a mean of the corners' distances with weights of one sign:
+// well-conditioned however thin the triangle.
+GN_INLINE void gn_fill_hit(const GnRayFrame* ray, const gn_f32* along, GnWide* weights, GnHit* hit) {
+  GnWide sum = gn_wide_add(gn_wide_add(weights[0], weights[1]), weights[2]);
+  GnWide distance = gn_wide_of(0.0f);
+  const int side = gn_wide_sign(sum);
+  int i;
+  for (i = 0; i < 3; ++i) {
+    // Rounding may leave a weight with the wrong sign where the ray meets an edge: it is zero there.
+    if (gn_wide_sign(weights[i]) * side < 0) weights[i] = gn_wide_of(0.0f);
+  }
+  sum = gn_wide_add(gn_wide_add(weights[0], weights[1]), weights[2]);
+  if (gn_wide_sign(sum) == 0) {  // met, but too thin even for wide arithmetic: its middle
+    for (i = 0; i < 3; ++i) weights[i] = gn_wide_of(1.0f);
+    sum = gn_wide_of(3.0f);
+  }
+  for (i = 0; i < 3; ++i) {
+    const GnWide offset = gn_wide_difference(along[i], ray->origin[ray->kz]);
+    distance = gn_wide_add(distance, gn_wide_multiply(weights[i], offset));
+  }
+  hit->t = gn_wide_ratio(distance, gn_wide_scale(sum, ray->direction[ray->kz]));
+  hit->u = gn_wide_ratio(weights[1], sum);
+  hit->v = gn_wide_ratio(weights[2], sum);
+}
+
+// Ray against closed triangle, either side. On a hit fills t, u, v of `hit` (not its primitive) and returns 1.
+GN_INLINE int gn_triangle_hit(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2,
+                              GnHit* hit) {
+  GnWide r[9], weights[3], permanents[3];
+  gn_f32 along[3];
+  const int verdict = gn_triangle_filter(ray, v0, v1, v2);
+  int i, k;
+  if (verdict == 0) return 0;
+  for (k = 0; k < 3; ++k) {
+    r[k] = gn_wide_difference(v0[k], ray->origin[k]);
+    r[3 + k] = gn_wide_difference(v1[k], ray->origin[k]);
+    r[6 + k] = gn_wide_difference(v2[k], ray->origin[k]);
+  }
+  for (i = 0; i < 3; ++i) {
+    const int next = i == 2 ? 0 : i + 1;
+    const int previous = i == 0 ? 2 : i - 1;
+    weights[i] = gn_wide_determinant(ray->direction, r + 3 * next, r + 3 * previous, permanents + i);
+  }
+  if (verdict < 0 && !gn_signs_agree(ray, v0, v1, v2, weights, permanents)) return 0;
+  along[0] = v0[ray->kz];
+  along[1] = v1[ray->kz];
+  along[2] = v2[ray->kz];
+  gn_fill_hit(ray, along, weights, hit);
+  return 1;
+}
+
+// Whether `hit` (range already checked) comes before the best so far: nearer, or as near with a lower index, so that
+// the answer does not depend on the order in which a tree offers triangles.
+GN_INLINE int gn_hit_is_nearer(const GnHit* hit, const GnHit* best) {
+  return hit->t < best->t || (hit->t == best->t && hit->primitive < best->primitive);
+}
+
+#endif

@@ -1,0 +1,137 @@
+// One work-group builds one small subtree, depth first, going back and forth between the two primitive buffers.
+// Every statement between barriers is met by all work-items: steps that do not apply run over empty ranges.
+#include "partition.h"
+
+// The smaller child is built first and the larger waits, so the stack holds at most log2(2^20) + 1 tasks.
+#define GN_SUBTREE_STACK 24
+
+static inline void set_task_bounds(__local GnTask* task, GnBoxPair box, GnBoxPair centroids) {
+  task->lo[0] = box.lo.x;
+  task->lo[1] = box.lo.y;
+  task->lo[2] = box.lo.z;
+  task->hi[0] = box.hi.x;
+  task->hi[1] = box.hi.y;
+  task->hi[2] = box.hi.z;
+  task->centroid_lo[0] = centroids.lo.x;
+  task->centroid_lo[1] = centroids.lo.y;
+  task->centroid_lo[2] = centroids.lo.z;
+  task->centroid_hi[0] = centroids.hi.x;
+  task->centroid_hi[1] = centroids.hi.y;
+  task->centroid_hi[2] = centroids.hi.z;
+}
+
+// A node of the sparse array: children of a split at leaf position m stand at 2m and 2m + 1.
+static inline void write_node(__global GnNode* node, const GnTask* task, uint first, uint count) {
+  int k;
+  for (k = 0; k < 3; ++k) {
+    node->lo[k] = task->lo[k];
+    node->hi[k] = task->hi[k];
+  }
+  node->first = first;
+  node->count = count;
+}
+
+// Chooses the task's split, or marks it a leaf by left_count == 0.
+static inline void decide(GnTask* task, GnSplit split, uint max_leaf_size, float cost_traversal,
+                          float cost_triangle) {
+  const uint count = task->end - task->begin;
+  const float measure = gn_box_measure(task->lo, task->hi);
+  const int leaf = count <= max_leaf_size &&
+                   (count == 1u || gn_leaf_is_better(&split, measure, count, cost_traversal, cost_triangle));
+  task->axis = split.axis;
+  task->plane = split.plane;
+  task->left_count = leaf ? 0u : split.axis == GN_NONE ? count / 2u : split.left_count;
+}
+
+// One work-group per task of roots. Writes nodes into the sparse array, marks split positions in inner_rank with 1
+// and leaf order into order; raises max_depth to the deepest leaf.
+__kernel void build_subtrees(__global float8* primitives0, __global float8* primitives1,
+                             __global const GnTask* roots, __global GnNode* nodes, __global uint* inner_rank,
+                             __global uint* order, volatile __global uint* max_depth, uint max_leaf_size,
+                             uint median_depth, float cost_traversal, float cost_triangle) {
+  __local GnBin bins[3 * GN_BINS];
+  __local uint counts[3 * GN_BINS];
+  __local GnSplit best_of_axis[3];
+  __local GnTask stack[GN_SUBTREE_STACK];
+  __local uint scan[GN_WGS];
+  __local int keys[6];
+  __local uint top;
+  uint deepest = 0u;
+  if (GN_LOCAL_ID == 0u) {
+    stack[0] = roots[get_group_id(0)];
+    top = 1u;
+  }
+  GN_GROUP_BARRIER();
+  while (1) {
+    const uint height = top;
+    GN_GROUP_BARRIER();
+    if (height == 0u) break;
+    GnTask task = stack[height - 1u];
+    const uint count = task.end - task.begin;
+    __global float8* from = task.buffer == 0u ? primitives0 : primitives1;
+    __global float8* to = task.buffer == 0u ? primitives1 : primitives0;
+    const GnBinning binning = binning_of(&task);
+    GnSplit split = {INFINITY, GN_NONE, 0u, 0u};
+    GN_GROUP_BARRIER();
+
+    // Bin and choose; single triangles and nodes past median_depth need no bins.
+    const uint binned_end = count > 1u && task.depth < median_depth ? task.end : task.begin;
+#if GN_WGS == 1
+    if (binned_end > task.begin) {
+      bin_range(from, task.begin, binned_end, binning, bins, counts);
+      split = choose_split(bins, counts, binning, count, best_of_axis);
+    }
+#else
+    bin_range(from, task.begin, binned_end, binning, bins, counts);
+    split = choose_split(bins, counts, binning, binned_end - task.begin, best_of_axis);
+#endif
+    decide(&task, split, max_leaf_size, cost_traversal, cost_triangle);
+    const uint is_leaf = task.left_count == 0u ? 1u : 0u;
+    const uint middle = task.begin + task.left_count;
+    const uint halved = !is_leaf && task.axis == GN_NONE ? 1u : 0u;
+
+    // Leaf: give out the order. Inner: partition.
+    uint i;
+    for (i = task.begin + GN_LOCAL_ID; i < (is_leaf ? task.end : task.begin); i += GN_WGS) {
+      order[i] = as_uint(from[i].s3);
+    }
+    const GnTwoBounds sides = partition_range(from, to, task.begin, is_leaf ? task.begin : task.end, task.begin,
+                                              middle, side_of(&task, binning), scan, keys);
+    GnBoxPair left = box_of_range(from, task.begin, halved ? middle : task.begin, keys);
+    GnBoxPair right = box_of_range(from, middle, halved ? task.end : middle, keys);
+
+    if (GN_LOCAL_ID == 0u) {
+      write_node(nodes + task.slot, &task, is_leaf ? task.begin : 2u * middle, is_leaf ? count : 0u);
+      if (is_leaf) {
+        deepest = max(deepest, task.depth);
+        top = height - 1u;
+      } else {
+        const uint left_waits = task.left_count > count - task.left_count ? 1u : 0u;
+        __local GnTask* left_task = stack + (left_waits ? height - 1u : height);
+        __local GnTask* right_task = stack + (left_waits ? height : height - 1u);
+        if (!halved) {
+          __local const GnBin* axis_bins = bins + task.axis * GN_BINS;
+          __local const uint* axis_counts = counts + task.axis * GN_BINS;
+          left = box_of_bins(axis_bins, axis_counts, 0u, task.plane + 1u);
+          right = box_of_bins(axis_bins, axis_counts, task.plane + 1u, GN_BINS);
+        }
+        set_task_bounds(left_task, left, sides.left);
+        left_task->begin = task.begin;
+        left_task->end = middle;
+        left_task->slot = 2u * middle;
+        left_task->depth = task.depth + 1u;
+        left_task->buffer = task.buffer ^ 1u;
+        set_task_bounds(right_task, right, sides.right);
+        right_task->begin = middle;
+        right_task->end = task.end;
+        right_task->slot = 2u * middle + 1u;
+        right_task->depth = task.depth + 1u;
+        right_task->buffer = task.buffer ^ 1u;
+        inner_rank[middle] = 1u;
+        top = height + 1u;
+      }
+    }
+    GN_GROUP_BARRIER();
+  }
+  if (GN_LOCAL_ID == 0u) atomic_max(max_depth, deepest);
+}

@@ -1,0 +1,158 @@
+// The device builder against the reference builder: the same bytes, whatever the device, flavour or cut of the work.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "gnomon/device/build_device.h"
+#include "gnomon/tree/build_reference.h"
+#include "gnomon/tree/bvh_check.h"
+#include "support/device.h"
+#include "support/shapes.h"
+
+using gnomon::BuildOptions;
+using gnomon::Bvh;
+using gnomon::test::context;
+
+namespace {
+
+// Builds on the device and demands the reference's bytes.
+void require_same(const std::vector<GnTriangle>& triangles, const BuildOptions& options) {
+  const gnomon::DeviceBvh tree = gnomon::build_device(context(), triangles, options);
+  const Bvh device = gnomon::download_bvh(context(), tree);
+  const Bvh reference = gnomon::build_reference(triangles, options);
+  const auto fault = gnomon::check_bvh(device, triangles, options);
+  if (fault) FAIL(fault->what << " at node " << fault->node);
+  REQUIRE(device.nodes.size() == reference.nodes.size());
+  REQUIRE(device.primitives == reference.primitives);
+  REQUIRE(gnomon::tree_hash(device) == gnomon::tree_hash(reference));
+  REQUIRE(tree.max_depth == gnomon::stats_of(reference, options).max_depth);
+}
+
+BuildOptions cut(std::uint32_t work_group_size, std::uint32_t subtree_size, std::uint32_t chunk_size) {
+  BuildOptions options;
+  options.work_group_size = work_group_size;
+  options.subtree_size = subtree_size;
+  options.chunk_size = chunk_size;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("the serial flavour builds the reference's tree from every awkward input", "[portable][memcheck]") {
+  for (const auto& [name, triangles] : gnomon::test::awkward_inputs()) {
+    CAPTURE(name);
+    require_same(triangles, cut(1, 0, 0));
+    // Small subtrees and chunks send even these through the level loop.
+    require_same(triangles, cut(1, 32, 64));
+  }
+}
+
+TEST_CASE("the cooperative flavour builds the same tree", "[portable][memcheck]") {
+  for (const auto& [name, triangles] : gnomon::test::awkward_inputs()) {
+    CAPTURE(name);
+    require_same(triangles, cut(16, 32, 64));
+  }
+  require_same(gnomon::test::soup(1500, 51), cut(16, 256, 200));
+}
+
+TEST_CASE("the tree does not depend on how the work is cut") {
+  const auto triangles = gnomon::test::soup(20000, 52);
+  for (const BuildOptions& options : {cut(0, 0, 0), cut(1, 64, 64), cut(1, 1000, 333), cut(1, 1048576, 8192),
+                                      cut(16, 1024, 512)}) {
+    CAPTURE(options.work_group_size, options.subtree_size, options.chunk_size);
+    require_same(triangles, options);
+  }
+}
+
+TEST_CASE("bins, leaf size, costs and median depth mean the same on the device") {
+  const auto triangles = gnomon::test::soup(3000, 53);
+  for (const std::uint32_t bins : {2U, 7U, 16U, 64U}) {
+    for (const std::uint32_t leaf : {1U, 8U, 255U}) {
+      BuildOptions options = cut(1, 512, 256);
+      options.bins = bins;
+      options.max_leaf_size = leaf;
+      options.cost_traversal = leaf == 8 ? 2.5F : 1.0F;
+      options.median_depth = bins == 7 ? 5 : 64;
+      CAPTURE(bins, leaf);
+      require_same(triangles, options);
+    }
+  }
+}
+
+TEST_CASE("a mesh of shared edges and flat boxes builds alike", "[portable]") {
+  require_same(gnomon::test::grid(40), cut(0, 0, 0));
+}
+
+TEST_CASE("a build reports its stages and a memory query that holds") {
+  const auto triangles = gnomon::test::soup(30000, 54);
+  gnomon::BuildReport report;
+  const auto tree = gnomon::build_device(context(), triangles, cut(0, 1024, 2048), &report);
+  REQUIRE(report.total_ms > 0.0);
+  std::vector<std::string> names;
+  for (const auto& [name, ms] : report.stages) names.push_back(name);
+  if (context().profiles()) {
+    REQUIRE(names == std::vector<std::string>{"prepare", "bin", "split", "partition", "subtrees", "compact", "gather"});
+  }
+  std::uint64_t stays = 0;
+  std::uint64_t scratch = 0;
+  for (const auto& need : gnomon::build_memory(context().device(), triangles.size(), cut(0, 1024, 2048))) {
+    (need.scratch ? scratch : stays) += need.bytes;
+  }
+  REQUIRE(tree.bytes() <= stays);
+  REQUIRE(report.scratch_bytes == scratch);
+}
+
+TEST_CASE("bad coordinates are refused with the first triangle's number") {
+  auto triangles = gnomon::test::soup(5000, 55);
+  for (const float bad : {std::nanf(""), INFINITY, -1e15F}) {
+    triangles[4000].v1[2] = bad;
+    triangles[4500].v0[0] = bad;
+    REQUIRE_THROWS_WITH(gnomon::build_device(context(), triangles), Catch::Contains("triangle 4000"));
+  }
+}
+
+TEST_CASE("options out of range are refused before anything is allocated") {
+  BuildOptions options;
+  options.bins = 1000;
+  REQUIRE_THROWS_WITH(gnomon::build_device(context(), gnomon::test::soup(3, 1), options), Catch::Contains("bins"));
+  options = {};
+  options.work_group_size = 256;
+  if (context().device().max_work_group < 256) {
+    REQUIRE_THROWS_WITH(gnomon::build_device(context(), gnomon::test::soup(3, 1), options),
+                        Catch::Contains("work_group_size"));
+  }
+}
+
+TEST_CASE("a scene that does not fit is refused with the buffer's name and size") {
+  gnomon::cl::DeviceInfo small = context().device();
+  small.max_allocation = 100000;
+  const auto needs = gnomon::build_memory(small, 100000, {});
+  bool named = false;
+  for (const auto& need : needs) {
+    if (const auto reason = gnomon::cl::why_not_fit(small, need.name, need.bytes)) {
+      REQUIRE(reason->find(need.name) != std::string::npos);
+      REQUIRE(reason->find(std::to_string(need.bytes)) != std::string::npos);
+      named = true;
+    }
+  }
+  REQUIRE(named);
+  REQUIRE_THROWS_WITH(gnomon::build_memory(small, 3000000000ULL, {}), Catch::Contains("2147483647"));
+}
+
+TEST_CASE("cancelling stops a build with its own error code") {
+  const auto triangles = gnomon::test::soup(2000, 56);
+  try {
+    static_cast<void>(gnomon::build_device(context(), triangles, {}, nullptr, [](auto, double) { return false; }));
+    FAIL("was not cancelled");
+  } catch (const gnomon::Error& error) {
+    REQUIRE(error.code() == gnomon::ErrorCode::kCancelled);
+  }
+}
+
+TEST_CASE("a tree survives the way to the host and back") {
+  const auto triangles = gnomon::test::soup(1000, 57);
+  const Bvh bvh = gnomon::build_reference(triangles);
+  const auto tree = gnomon::upload_bvh(context(), bvh, triangles);
+  REQUIRE(gnomon::tree_hash(gnomon::download_bvh(context(), tree)) == gnomon::tree_hash(bvh));
+  const Bvh nothing = gnomon::download_bvh(context(), gnomon::upload_bvh(context(), {}, {}));
+  REQUIRE(nothing.nodes.empty());
+}

@@ -1,0 +1,65 @@
+// kernels/shared/cost_math.h on the host: the arithmetic every tree is decided by.
+#include "gnomon/shared/cost_math.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/shapes.h"
+
+using gnomon::test::Random;
+
+TEST_CASE("the division-free reciprocal is right within two ulp and scales exactly by powers of two") {
+  Random random(31);
+  for (int i = 0; i < 200000; ++i) {
+    const float x = random.between(1.0F, 2.0F);
+    CAPTURE(x);
+    const float r = gn_reciprocal(x);
+    REQUIRE(std::fabs(static_cast<double>(r) * x - 1.0) <= 2.4e-7);
+    for (const int exponent : {-90, -40, 40, 90}) {
+      REQUIRE(gn_reciprocal(std::ldexp(x, exponent)) == std::ldexp(r, -exponent));
+    }
+  }
+}
+
+TEST_CASE("bins are monotone, start at zero and end at the last") {
+  Random random(32);
+  for (int i = 0; i < 20000; ++i) {
+    const float lo = random.between(-1e5F, 1e5F);
+    const float hi = lo + random.between(1e-3F, 1e5F);
+    const std::uint32_t bins = 2 + random.below(63);
+    const float scale = gn_bin_scale(lo, hi, bins);
+    CAPTURE(lo, hi, bins);
+    REQUIRE(gn_bin_of(lo, lo, scale, bins) == 0);
+    REQUIRE(gn_bin_of(hi, lo, scale, bins) == bins - 1);
+    std::uint32_t before = 0;
+    for (int step = 0; step <= 20; ++step) {
+      const float x = std::min(hi, lo + (hi - lo) * static_cast<float>(step) / 20.0F);
+      const std::uint32_t bin = gn_bin_of(x, lo, scale, bins);
+      REQUIRE(bin >= before);
+      REQUIRE(bin < bins);
+      before = bin;
+    }
+  }
+}
+
+TEST_CASE("an axis without extent offers no split") {
+  REQUIRE(gn_bin_scale(3.0F, 3.0F, 16) == 0.0F);
+  REQUIRE(gn_bin_scale(0.0F, 1e-38F, 16) == 0.0F);
+}
+
+TEST_CASE("of equally cheap splits the more even one wins, then the first") {
+  const GnSplit uneven{1.0F, 0, 0, 1};
+  const GnSplit even{1.0F, 0, 3, 5};
+  const GnSplit later{1.0F, 2, 7, 5};
+  REQUIRE(gn_split_is_better(&even, &uneven, 10) != 0);
+  REQUIRE(gn_split_is_better(&uneven, &even, 10) == 0);
+  REQUIRE(gn_split_is_better(&later, &even, 10) == 0);
+  const GnSplit cheap{0.5F, 0, 0, 1};
+  REQUIRE(gn_split_is_better(&cheap, &even, 10) != 0);
+}
+
+TEST_CASE("the measure is half the surface area") {
+  const float lo[3] = {1, 2, 3};
+  const float hi[3] = {2, 4, 6};
+  REQUIRE(gn_box_measure(lo, hi) == 11.0F);
+}

@@ -1,0 +1,210 @@
+// kernels/shared/hit_math.h on the host: exact decisions, conservative boxes, scale invariance.
+#include "gnomon/shared/hit_math.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "gnomon/tree/oracle.h"
+#include "support/shapes.h"
+
+using gnomon::test::Random;
+
+namespace {
+
+bool hits(const GnRay& ray, const GnTriangle& t, GnHit* out = nullptr) {
+  const GnRayFrame frame = gn_ray_frame(&ray);
+  GnHit hit{};
+  const bool met = gn_triangle_hit(&frame, t.v0, t.v1, t.v2, &hit) != 0;
+  if (out != nullptr) *out = hit;
+  return met;
+}
+
+double ulps(float value, double exact) {
+  const auto rounded = static_cast<float>(exact);
+  const double ulp = static_cast<double>(std::nextafter(std::fabs(rounded), INFINITY)) - std::fabs(rounded);
+  return std::fabs(value - exact) / ulp;
+}
+
+// Compares with the oracle; returns the error of t in ulp, 0 for a miss.
+double agrees_with_oracle(const GnRay& ray, const GnTriangle& t) {
+  GnHit hit{};
+  const bool met = hits(ray, t, &hit);
+  const gnomon::ExactHit exact = gnomon::exact_intersect(ray, t);
+  REQUIRE(met == exact.inside);
+  return met ? ulps(hit.t, exact.t) : 0.0;
+}
+
+}  // namespace
+
+TEST_CASE("random rays and triangles: the float code decides as the exact oracle and t is right within an ulp") {
+  Random random(11);
+  double worst = 0.0;
+  for (int i = 0; i < 200000; ++i) {
+    CAPTURE(i);
+    const GnRay ray = gnomon::test::random_ray(random, -1.0F, 1.0F);
+    worst = std::max(worst, agrees_with_oracle(ray, gnomon::test::soup(1, static_cast<std::uint32_t>(i), 1.0F, -5.0F)[0]));
+  }
+  REQUIRE(worst <= 1.0);
+}
+
+TEST_CASE("rays aimed at corners and edge midpoints are decided as the exact oracle decides") {
+  Random random(12);
+  int met = 0;
+  for (int i = 0; i < 60000; ++i) {
+    CAPTURE(i);
+    const float offset = i % 3 == 0 ? 0.0F : i % 3 == 1 ? 1.0e3F : 1.0e5F;
+    const GnTriangle t = gnomon::test::soup(1, static_cast<std::uint32_t>(i), 0.01F, offset)[0];
+    const float* a = gnomon::test::corner(t, random.below(3));
+    const float* b = gnomon::test::corner(t, random.below(3));
+    const float target[3] = {0.5F * (a[0] + b[0]), 0.5F * (a[1] + b[1]), 0.5F * (a[2] + b[2])};
+    const GnRay ray = gnomon::test::aimed(
+        {offset + random.between(0, 10), offset + random.between(0, 10), offset + random.between(0, 10)}, target);
+    REQUIRE(agrees_with_oracle(ray, t) <= 1.0);
+    met += hits(ray, t) ? 1 : 0;
+  }
+  REQUIRE(met > 1000);  // the aim is good enough for the test to say something
+}
+
+TEST_CASE("a ray through a shared edge or vertex of a fan hits at least one of its triangles") {
+  Random random(13);
+  for (int i = 0; i < 20000; ++i) {
+    CAPTURE(i);
+    const float offset = i % 2 == 0 ? 0.0F : 1.0e5F;
+    constexpr int kSpokes = 7;
+    std::array<std::array<float, 3>, kSpokes> rim{};
+    for (int s = 0; s < kSpokes; ++s) {
+      const double angle = 6.283185307179586 * s / kSpokes;
+      rim[static_cast<std::size_t>(s)] = {offset + static_cast<float>(std::cos(angle)) + random.between(-0.1F, 0.1F),
+                                          offset + static_cast<float>(std::sin(angle)) + random.between(-0.1F, 0.1F),
+                                          offset + random.between(-0.3F, 0.3F)};
+    }
+    const std::array<float, 3> hub = {offset + random.between(-0.1F, 0.1F), offset + random.between(-0.1F, 0.1F), offset};
+    const std::array<float, 3> origin = {offset + random.between(-0.3F, 0.3F), offset + random.between(-0.3F, 0.3F),
+                                         offset + 5.0F};
+    const GnRay ray = gnomon::test::aimed(origin, hub.data());
+    int met = 0;
+    for (std::size_t s = 0; s < kSpokes; ++s) {
+      met += hits(ray, gnomon::test::triangle(hub, rim[s], rim[(s + 1) % kSpokes])) ? 1 : 0;
+    }
+    REQUIRE(met >= 1);
+  }
+}
+
+TEST_CASE("a ray in the triangle's plane and a triangle without area are never hit") {
+  const GnTriangle flat = gnomon::test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  REQUIRE_FALSE(hits(gnomon::test::ray({-1, 0.25F, 0}, {1, 0, 0}), flat));
+  REQUIRE_FALSE(hits(gnomon::test::ray({-1, 0, 0}, {1, 0, 0}), flat));
+  const GnTriangle needle = gnomon::test::triangle({0, 0, 0}, {1, 1, 1}, {2, 2, 2});
+  REQUIRE_FALSE(hits(gnomon::test::ray({1, 1, -5}, {0, 0, 1}), needle));
+  const GnTriangle point = gnomon::test::triangle({1, 1, 1}, {1, 1, 1}, {1, 1, 1});
+  REQUIRE_FALSE(hits(gnomon::test::ray({1, 1, -5}, {0, 0, 1}), point));
+}
+
+TEST_CASE("both sides of a triangle give the same t and mirrored decisions") {
+  Random random(14);
+  for (int i = 0; i < 20000; ++i) {
+    const GnTriangle t = gnomon::test::soup(1, static_cast<std::uint32_t>(i), 1.0F, -5.0F)[0];
+    const GnTriangle turned = gnomon::test::triangle({t.v0[0], t.v0[1], t.v0[2]}, {t.v2[0], t.v2[1], t.v2[2]},
+                                                     {t.v1[0], t.v1[1], t.v1[2]});
+    const GnRay ray = gnomon::test::random_ray(random, -1.0F, 1.0F);
+    GnHit a{};
+    GnHit b{};
+    CAPTURE(i);
+    REQUIRE(hits(ray, t, &a) == hits(ray, turned, &b));
+    REQUIRE(std::fabs(a.t - b.t) <= 1.2e-7F * std::fabs(a.t));
+  }
+}
+
+TEST_CASE("scaling by powers of two scales t exactly and changes no decision") {
+  Random random(15);
+  for (int i = 0; i < 20000; ++i) {
+    const GnTriangle t = gnomon::test::soup(1, static_cast<std::uint32_t>(i), 1.0F, -5.0F)[0];
+    const GnRay ray = gnomon::test::random_ray(random, -1.0F, 1.0F);
+    for (const int exponent : {-40, -10, 10, 40}) {
+      CAPTURE(i, exponent);
+      const float s = std::ldexp(1.0F, exponent);
+      GnTriangle scaled = t;
+      GnRay scaled_ray = ray;
+      for (std::size_t k = 0; k < 3; ++k) {
+        scaled.v0[k] *= s;
+        scaled.v1[k] *= s;
+        scaled.v2[k] *= s;
+        scaled_ray.origin[k] *= s;
+      }
+      GnHit a{};
+      GnHit b{};
+      REQUIRE(hits(ray, t, &a) == hits(scaled_ray, scaled, &b));
+      REQUIRE(b.t == a.t * s);
+      REQUIRE(b.u == a.u);
+    }
+  }
+}
+
+TEST_CASE("the box test accepts every box that holds a point of the ray") {
+  Random random(16);
+  for (int i = 0; i < 300000; ++i) {
+    CAPTURE(i);
+    GnRay ray = gnomon::test::random_ray(random, -10.0F, 10.0F);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (random.below(6) == 0) ray.direction[k] = random.below(2) == 0 ? 0.0F : -0.0F;
+      if (random.below(6) == 0) ray.direction[k] *= 1e-20F;
+    }
+    if (gn_ray_is_valid(&ray) == 0) continue;
+    // The smallest box of floats certain to hold the ray's point at t.
+    const double t = random.between(0.0F, 20.0F);
+    float lo[3];
+    float hi[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double x = static_cast<double>(ray.origin[k]) + t * static_cast<double>(ray.direction[k]);
+      const bool still = ray.direction[k] == 0.0F;
+      lo[k] = still ? ray.origin[k] : std::nextafter(static_cast<float>(x), -INFINITY);
+      hi[k] = still ? ray.origin[k] : std::nextafter(static_cast<float>(x), INFINITY);
+      if (random.below(2) == 0) (random.below(2) == 0 ? lo[k] -= 1.0F : hi[k] += 1.0F);
+    }
+    const GnRayFrame frame = gn_ray_frame(&ray);
+    REQUIRE(gn_box_entry(&frame, lo, hi, 0.0F, gn_slab_limit(INFINITY)) < GN_INFINITY);
+    REQUIRE(gn_box_entry(&frame, lo, hi, 0.0F, gn_slab_limit(static_cast<float>(t))) < GN_INFINITY);
+  }
+}
+
+TEST_CASE("rays lying in a box's faces, with either zero, meet the box") {
+  const float lo[3] = {0, 0, 0};
+  const float hi[3] = {1, 1, 1};
+  for (const float zero : {0.0F, -0.0F}) {
+    for (const float y : {0.0F, 1.0F}) {
+      for (const float z : {0.0F, 0.5F, 1.0F}) {
+        for (const float direction : {1.0F, -1.0F}) {
+          CAPTURE(zero, y, z, direction);
+          const GnRay ray = gnomon::test::ray({direction > 0 ? -2.0F : 3.0F, y, z}, {direction, zero, zero});
+          const GnRayFrame frame = gn_ray_frame(&ray);
+          REQUIRE(gn_box_entry(&frame, lo, hi, 0.0F, gn_slab_limit(INFINITY)) == 2.0F);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("boxes beside, behind and beyond the range are rejected") {
+  const float lo[3] = {0, 0, 0};
+  const float hi[3] = {1, 1, 1};
+  const auto entry = [&](const GnRay& ray) {
+    const GnRayFrame frame = gn_ray_frame(&ray);
+    return gn_box_entry(&frame, lo, hi, ray.tmin, gn_slab_limit(ray.tmax));
+  };
+  REQUIRE(entry(gnomon::test::ray({-2, 1.5F, 0.5F}, {1, 0, 0})) == INFINITY);
+  REQUIRE(entry(gnomon::test::ray({-2, 0.5F, 0.5F}, {-1, 0, 0})) == INFINITY);
+  REQUIRE(entry(gnomon::test::ray({-2, 0.5F, 0.5F}, {1, 0, 0}, 0.0F, 1.9F)) == INFINITY);
+  REQUIRE(entry(gnomon::test::ray({-2, 0.5F, 0.5F}, {1, 0, 0}, 3.1F)) == INFINITY);
+}
+
+TEST_CASE("rays with NaN, infinite origins or no direction are not valid") {
+  const float nan = std::nanf("");
+  REQUIRE(gn_ray_is_valid(std::data({gnomon::test::ray({0, 0, 0}, {0, 0, 1})})) != 0);
+  for (const GnRay& bad :
+       {gnomon::test::ray({nan, 0, 0}, {0, 0, 1}), gnomon::test::ray({0, INFINITY, 0}, {0, 0, 1}),
+        gnomon::test::ray({0, 0, 0}, {0, nan, 1}), gnomon::test::ray({0, 0, 0}, {0, 0, 0}),
+        gnomon::test::ray({0, 0, 0}, {0, -0.0F, 0}), gnomon::test::ray({0, 0, 0}, {INFINITY, 0, 1}),
+        gnomon::test::ray({0, 0, 0}, {0, 0, 1}, nan), gnomon::test::ray({0, 0, 0}, {0, 0, 1}, 0, nan)}) {
+    REQUIRE(gn_ray_is_valid(&bad) == 0);
+  }
+}

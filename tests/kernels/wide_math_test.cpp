@@ -1,0 +1,59 @@
+// The arithmetic of devices without double (pairs of floats), compiled for the host: it must decide and measure as
+// double does. A program of its own, because GN_WITHOUT_FP64 changes what the shared headers define.
+#define GN_WITHOUT_FP64
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "gnomon/shared/hit_math.h"
+#include "gnomon/tree/oracle.h"
+#include "support/shapes.h"
+
+using gnomon::test::Random;
+
+TEST_CASE("a pair's product and sum carry what one float drops") {
+  Random random(21);
+  for (int i = 0; i < 100000; ++i) {
+    const float a = random.between(-1000.0F, 1000.0F);
+    const float b = random.between(-1.0F, 1.0F);
+    const GnWide product = gn_two_product(a, b);
+    const GnWide sum = gn_two_sum(a, b);
+    CAPTURE(a, b);
+    REQUIRE(static_cast<double>(product.high) + product.low == static_cast<double>(a) * b);
+    REQUIRE(static_cast<double>(sum.high) + sum.low == static_cast<double>(a) + b);
+  }
+}
+
+TEST_CASE("without double, random rays are decided as the exact oracle decides and t is right within an ulp") {
+  Random random(22);
+  int met = 0;
+  for (int i = 0; i < 200000; ++i) {
+    CAPTURE(i);
+    const GnRay ray = gnomon::test::random_ray(random, -1.0F, 1.0F);
+    const GnTriangle t = gnomon::test::soup(1, static_cast<std::uint32_t>(i), 4.0F, -5.0F)[0];
+    const GnRayFrame frame = gn_ray_frame(&ray);
+    GnHit hit{};
+    const gnomon::ExactHit exact = gnomon::exact_intersect(ray, t);
+    REQUIRE((gn_triangle_hit(&frame, t.v0, t.v1, t.v2, &hit) != 0) == exact.inside);
+    if (!exact.inside) continue;
+    met += 1;
+    REQUIRE(std::fabs(hit.t - exact.t) <= 1.2e-7 * std::fabs(exact.t));
+  }
+  REQUIRE(met > 1000);
+}
+
+TEST_CASE("without double, no ray aimed at a corner is lost that the oracle says hits") {
+  Random random(23);
+  int met = 0;
+  for (int i = 0; i < 50000; ++i) {
+    CAPTURE(i);
+    const GnTriangle t = gnomon::test::soup(1, static_cast<std::uint32_t>(i), 0.01F, 1000.0F)[0];
+    const GnRay ray = gnomon::test::aimed({random.between(0, 10), random.between(0, 10), random.between(0, 10)},
+                                          gnomon::test::corner(t, random.below(3)));
+    if (!gnomon::exact_intersect(ray, t).inside) continue;
+    const GnRayFrame frame = gn_ray_frame(&ray);
+    GnHit hit{};
+    REQUIRE(gn_triangle_hit(&frame, t.v0, t.v1, t.v2, &hit) != 0);
+    met += 1;
+  }
+  REQUIRE(met > 1000);
+}

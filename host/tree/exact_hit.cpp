@@ -4,8 +4,8 @@
 // nothing.
 #include "gnomon/tree/exact_hit.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "gnomon/tree/expansion.h"
@@ -142,6 +142,11 @@ int compare(const Ray& ray, const FoundHit& found, float bound) {
   return rest.sign() * denominator.sign();
 }
 
+bool same_corners(const Triangle& a, const Triangle& b) {
+  return std::equal(a.v0, a.v0 + 3, b.v0) && std::equal(a.v1, a.v1 + 3, b.v1) &&
+         std::equal(a.v2, a.v2 + 3, b.v2);
+}
+
 }  // namespace
 
 int exact_edge_sign(const float d[3], const float o[3], const float a[3], const float b[3]) {
@@ -187,7 +192,7 @@ bool in_range(const Ray& ray, const FoundHit& found) {
 bool nearer(const Ray& ray, const FoundHit& a, const FoundHit& b) {
   const double difference = a.hit.t - b.hit.t;
   if (std::fabs(difference) > a.hit.t_error + b.hit.t_error) return difference < 0.0;
-  if (std::memcmp(a.triangle, b.triangle, sizeof(Triangle)) == 0) return false;  // scenes do repeat triangles
+  if (same_corners(*a.triangle, *b.triangle)) return false;  // scenes do repeat triangles
   const Expansion denominator_a = exact_denominator(ray, *a.triangle);
   const Expansion denominator_b = exact_denominator(ray, *b.triangle);
   Expansion rest;  // sign(n_a / W_a - n_b / W_b) = sign(n_a W_b - n_b W_a) sign(W_a) sign(W_b)

@@ -64,7 +64,8 @@ struct OracleReport {
 };
 
 // Judges device results. `any` may be empty (then only closest hits are judged); `hits` may be empty likewise.
-// hits[i] and any[i] (0 or 1) belong to rays[i]. Throws Error{kInvalidArgument} on unequal lengths, kCancelled.
+// hits[i] and any[i] (0 or 1) belong to rays[i]. With both given, any is held against hits, so that one fault is counted
+// once; alone, against the oracle. Throws Error{kInvalidArgument} on unequal lengths, kCancelled.
 [[nodiscard]] OracleReport judge(std::span<const Triangle> triangles, std::span<const Ray> rays,
                                  std::span<const Hit> hits, std::span<const std::uint32_t> any,
                                  const OracleOptions& options = {}, const Progress& progress = {});

@@ -81,14 +81,17 @@ GN_INLINE void gn_grow_box(gn_f32* lo, gn_f32* hi, GN_BINS_SPACE const GnBin* bi
 GN_INLINE GnSplit gn_sweep_axis(GN_BINS_SPACE const GnBin* bins, GN_BINS_SPACE const gn_u32* counts, gn_u32 bin_count,
                                 gn_u32 axis, gn_u32 count) {
   gn_f32 right_cost[GN_MAX_BINS];
-  gn_f32 lo[3], hi[3];
+  gn_f32 lo[3], hi[3], cost = 0.0f;
   gn_u32 i, seen = 0u;
   GnSplit best = {GN_INFINITY, GN_NONE, 0u, 0u};
   gn_empty_box(lo, hi);
   for (i = bin_count - 1u; i > 0u; --i) {
-    if (counts[i] > 0u) gn_grow_box(lo, hi, &bins[i]);
-    seen += counts[i];
-    right_cost[i] = seen > 0u ? gn_box_measure(lo, hi) * (gn_f32)seen : 0.0f;
+    if (counts[i] > 0u) {
+      gn_grow_box(lo, hi, &bins[i]);
+      seen += counts[i];
+      cost = gn_box_measure(lo, hi) * (gn_f32)seen;
+    }
+    right_cost[i] = cost;
   }
   gn_empty_box(lo, hi);
   seen = 0u;

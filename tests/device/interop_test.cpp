@@ -77,9 +77,9 @@ TEST_CASE("builds and traces on the caller's context, queue and buffers, and lea
       REQUIRE(hits[i].t == expected[i].t);
     }
   }
+  for (cl_mem mem : {triangle_buffer, ray_buffer, hit_buffer}) REQUIRE(clReleaseMemObject(mem) == CL_SUCCESS);
   REQUIRE(foreign.context_references() == contexts);
   REQUIRE(foreign.queue_references() == queues);
-  for (cl_mem mem : {triangle_buffer, ray_buffer, hit_buffer}) REQUIRE(clReleaseMemObject(mem) == CL_SUCCESS);
 }
 
 TEST_CASE("enqueueing a trace does not wait for what the caller has in the queue before it") {

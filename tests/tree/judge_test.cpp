@@ -54,6 +54,16 @@ TEST_CASE("a hit within the tolerance stands and is measured") {
   CHECK(judge_one(ahead(), {3, 0.25F, kNan, 0}).max_uv_error == std::numeric_limits<double>::infinity());
 }
 
+TEST_CASE("distances that a float cannot hold are not held against the device") {
+  const Ray slow{{0, 0, 0}, 0, {0, 0, 0x1p-130F}, kInf};  // t = 3 * 2^130
+  CHECK(counts(judge_one(slow, kMiss)) == kAmbiguous);
+  CHECK(counts(judge_one(slow, hit_at(kInf, 0))) == kAmbiguous);
+  const Ray fast{{0, 0, 3 - 0x1p-22F}, -1, {0, 0, 0x1p112F}, kInf};  // t = 2^-134, flushed to zero by some
+  CHECK(counts(judge_one(fast, hit_at(0x1p-134F, 0))) == kClean);
+  CHECK(counts(judge_one(fast, hit_at(0, 0))) == kClean);
+  CHECK(counts(judge_one(fast, hit_at(1, 0))) == kLost);
+}
+
 TEST_CASE("a hit that is nearer than any triangle, or where nothing is, is false") {
   CHECK(counts(judge_one(ahead(), hit_at(ulps_away(3, -5), 0))) == kFalse);
   CHECK(counts(judge_one(ahead(), hit_at(1, 0))) == kFalse);

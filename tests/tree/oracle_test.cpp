@@ -33,8 +33,8 @@ bool require_intersection(const Ray& ray, const Triangle& triangle) {
   REQUIRE(hit.t_error <= 1e-9 * std::fabs(hit.t));
   REQUIRE(abs(Rational(hit.u) - expected->u) <= Rational(1e-11));
   REQUIRE(abs(Rational(hit.v) - expected->v) <= Rational(1e-11));
-  REQUIRE(hit.u >= 0.0);
-  REQUIRE(hit.v >= 0.0);
+  REQUIRE((expected->u == 0 ? hit.u == 0.0 : hit.u >= 0.0));
+  REQUIRE((expected->v == 0 ? hit.v == 0.0 : hit.v >= 0.0));
   return true;
 }
 
@@ -42,19 +42,20 @@ bool require_intersection(const Ray& ray, const Triangle& triangle) {
 
 TEST_CASE("edge signs equal rational arithmetic for random points") {
   Source source(1);
-  for (int i = 0; i < 10000; ++i)
+  for (int i = 0; i < 6000; ++i) {
     require_sign({source.point(), source.point(), source.point(), source.point()});
+  }
 }
 
 TEST_CASE(
     "edge signs equal rational arithmetic for any finite bits, denormals and the largest floats included") {
   Source source(2);
   const auto point = [&] { return Point{source.any_finite(), source.any_finite(), source.any_finite()}; };
-  for (int i = 0; i < 6000; ++i) require_sign({point(), point(), point(), point()});
+  for (int i = 0; i < 4000; ++i) require_sign({point(), point(), point(), point()});
   const float extremes[] = {0.0F, -0.0F, 0x1p-149F, -0x1p-149F, 0x1p-126F, 1.0F, FLT_MAX, -FLT_MAX};
   const auto extreme = [&] { return extremes[source.integer(0, 7)]; };
   const auto corner = [&] { return Point{extreme(), extreme(), extreme()}; };
-  for (int i = 0; i < 6000; ++i) require_sign({corner(), corner(), corner(), corner()});
+  for (int i = 0; i < 4000; ++i) require_sign({corner(), corner(), corner(), corner()});
 }
 
 TEST_CASE("edge signs equal rational arithmetic when scales of 2^-100 to 2^100 mix") {
@@ -62,7 +63,7 @@ TEST_CASE("edge signs equal rational arithmetic when scales of 2^-100 to 2^100 m
   const float scales[] = {0x1p-100F, 0x1p-40F, 1.0F, 0x1p40F, 0x1p100F};
   const auto coordinate = [&] { return source.unit() * scales[source.integer(0, 4)]; };
   const auto point = [&] { return Point{coordinate(), coordinate(), coordinate()}; };
-  for (int i = 0; i < 6000; ++i) require_sign({point(), point(), point(), point()});
+  for (int i = 0; i < 4000; ++i) require_sign({point(), point(), point(), point()});
 }
 
 TEST_CASE("edge signs equal rational arithmetic one ulp from the ray, near the origin and 1e5 away") {
@@ -153,7 +154,7 @@ TEST_CASE(
 TEST_CASE("a ray that starts within a sliver meets it at zero, with u and v as exact as elsewhere") {
   Source source(15);
   int met = 0;
-  for (int i = 0; i < 6000; ++i) {
+  for (int i = 0; i < 3000; ++i) {
     std::array<Point, 2> ends{source.point(), source.point()};
     ends[0][2] = ends[1][2] = 0.0F;  // all in the plane z = 0
     const std::array<double, 2> places{0.5 + 0.5 * source.unit(), 0.5 + 0.5 * source.unit()};
@@ -190,6 +191,17 @@ TEST_CASE("a ray through a corner or an edge meets the triangle") {
   REQUIRE(met > 2900);  // all but lines in the plane and triangles without area
 }
 
+TEST_CASE("u and v are exactly zero where the ray meets the opposite edge, however the doubles round") {
+  Source source(16);
+  for (int i = 0; i < 1500; ++i) {
+    const std::array<Point, 3> p{source.coarse_point(), source.coarse_point(), source.coarse_point()};
+    const Triangle triangle = triangle_of(p[0], p[1], p[2]);
+    const Point start = source.coarse_point();
+    const Point d = difference(p[static_cast<std::size_t>(source.integer(0, 2))], start);
+    require_intersection(ray_of(start, {3 * d[0], 3 * d[1], 3 * d[2]}), triangle);
+  }
+}
+
 TEST_CASE("a line in the triangle's plane and a triangle without area are never met") {
   const Triangle flat = triangle_of({0, 0, 0}, {4, 0, 0}, {0, 4, 0});
   const Triangle segment = triangle_of({0, 0, 0}, {1, 1, 0}, {3, 3, 0});
@@ -204,11 +216,14 @@ TEST_CASE("a line in the triangle's plane and a triangle without area are never 
 TEST_CASE("coordinates that are not finite are never met") {
   const Ray ray = ray_of({1, 1, -1}, {0.125F, -0.25F, 1});
   const Triangle triangle = triangle_of({0, 0, 0}, {4, 0, 1}, {0, 4, 2});
+  const Triangle back = triangle_of({0, 0, 0}, {0, 4, 2}, {4, 0, 1});
   REQUIRE(gnomon::exact_intersect(ray, triangle).inside);
+  REQUIRE(gnomon::exact_intersect(ray, back).inside);
   for (const float bad : {kInf, -kInf, kNan}) {
     for (int axis = 0; axis < 3; ++axis) {
       CAPTURE(bad, axis);
-      std::array<Triangle, 3> poisoned{triangle, triangle, triangle};
+      std::array<Triangle, 4> poisoned{triangle, triangle, triangle, back};
+      poisoned[3].v0[axis] = bad;
       poisoned[0].v0[axis] = bad;
       poisoned[1].v1[axis] = bad;
       poisoned[2].v2[axis] = bad;

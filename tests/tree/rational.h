@@ -49,9 +49,9 @@ class Source {
     return {static_cast<float>(integer(-size, size)), static_cast<float>(integer(-size, size)),
             static_cast<float>(integer(-size, size))};
   }
-  // Multiples of 2^-16: differences and their triples are exact floats.
+  // Multiples of 2^-19: differences and up to eight times these are exact floats.
   Point coarse_point() {
-    const auto coordinate = [&] { return std::round(unit() * 0x1p16F) * 0x1p-16F; };
+    const auto coordinate = [&] { return std::round(unit() * 0x1p19F) * 0x1p-19F; };
     return {coordinate(), coordinate(), coordinate()};
   }
   GnTriangle triangle(float scale = 1.0F, float offset = 0.0F) {

@@ -1,0 +1,285 @@
+// The question: how fast are build and trace beside Embree 3.13 (MEDIUM) on the same scene and rays?
+// One process, rounds that alternate the two and swap their order, process CPU time on one thread; one JSON row a
+// measurement on stdout. Ratios are claims; absolute rates are direction only. Charts and README read the rows.
+//
+//   spine_bench [SCENE TRIANGLES]...   default: city 1000000 atrium 1000000
+//
+// What is inside the measured time: ours, filling nothing (rays and hits stay in device buffers) and the launch; Embree's,
+// filling an RTCRayHit per ray from the same array and writing a 16-byte hit back, as any caller with a batch must.
+#include <embree3/rtcore.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "gnomon/base/stats.h"
+#include "gnomon/cl/launch.h"
+#include "gnomon/device/trace_device.h"
+#include "gnomon/scene/generators.h"
+#include "gnomon/scene/ray_set.h"
+#include "gnomon_commit.h"
+
+namespace {
+
+using gnomon::Hit;
+using gnomon::Ray;
+using nlohmann::json;
+
+constexpr int kRounds = 7;
+constexpr std::uint64_t kRays = 262144;
+constexpr std::uint64_t kSeed = 1;
+
+// CPU time of all threads: time lost to other processes does not count.
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+json spread_json(const std::vector<double>& values) {
+  const gnomon::Spread s = gnomon::spread_of(values);
+  return {{"median", s.median}, {"min", s.min}, {"max", s.max}, {"n", s.count}};
+}
+
+// Seconds of both sides over the rounds; the one that goes first changes every round.
+struct Paired {
+  std::vector<double> ours;
+  std::vector<double> peer;
+};
+
+template <typename Ours, typename Peer>
+Paired measure(const Ours& ours, const Peer& peer) {
+  const auto timed = [](const auto& work) {
+    const double start = cpu_seconds();
+    work();
+    return cpu_seconds() - start;
+  };
+  ours();
+  peer();
+  Paired out;
+  for (int round = 0; round < kRounds; ++round) {
+    if (round % 2 == 0) {
+      out.ours.push_back(timed(ours));
+      out.peer.push_back(timed(peer));
+    } else {
+      out.peer.push_back(timed(peer));
+      out.ours.push_back(timed(ours));
+    }
+  }
+  return out;
+}
+
+// Rates in millions a second, and the ratio's median over rounds (above 1: we are faster).
+void add_rates(json& row, const Paired& times, double items, const char* unit) {
+  std::vector<double> ours, peer, ratios;
+  for (std::size_t i = 0; i < times.ours.size(); ++i) {
+    ours.push_back(items * 1e-6 / times.ours[i]);
+    peer.push_back(items * 1e-6 / times.peer[i]);
+    ratios.push_back(times.peer[i] / times.ours[i]);
+  }
+  row[std::string("gnomon_") + unit] = spread_json(ours);
+  row[std::string("embree_") + unit] = spread_json(peer);
+  row["ratio"] = spread_json(ratios);
+}
+
+class EmbreeScene {
+ public:
+  EmbreeScene(const std::vector<gnomon::Triangle>& triangles, bool robust) : triangles_(triangles), robust_(robust) {
+    device_ = rtcNewDevice("threads=1,set_affinity=0");
+  }
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+  ~EmbreeScene() {
+    if (scene_ != nullptr) rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+
+  // Geometry from unshared corners, as we take them; the copy into Embree's buffers is inside, as our upload is.
+  void build() {
+    if (scene_ != nullptr) rtcReleaseScene(scene_);
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
+    if (robust_) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const std::size_t count = triangles_.size();
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * count));
+    auto* indices = static_cast<unsigned*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, count));
+    std::copy_n(triangles_.front().v0, 9 * count, vertices);
+    for (unsigned i = 0; i < 3 * count; ++i) indices[i] = i;
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+
+  void closest(const std::vector<Ray>& rays, std::vector<Hit>& hits) const {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      RTCIntersectContext context;
+      rtcInitIntersectContext(&context);
+      RTCRayHit query{};
+      query.ray = load(rays[i]);
+      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      query.hit.primID = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene_, &context, &query);
+      hits[i] = {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
+    }
+  }
+
+  void any(const std::vector<Ray>& rays, std::vector<std::uint32_t>& occluded) const {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      RTCIntersectContext context;
+      rtcInitIntersectContext(&context);
+      RTCRay ray = load(rays[i]);
+      rtcOccluded1(scene_, &context, &ray);
+      occluded[i] = ray.tfar < 0.0F ? 1 : 0;
+    }
+  }
+
+ private:
+  static RTCRay load(const Ray& r) {
+    RTCRay ray{};
+    ray.org_x = r.origin[0];
+    ray.org_y = r.origin[1];
+    ray.org_z = r.origin[2];
+    ray.tnear = r.tmin;
+    ray.dir_x = r.direction[0];
+    ray.dir_y = r.direction[1];
+    ray.dir_z = r.direction[2];
+    ray.tfar = r.tmax;
+    ray.mask = 0xffffffffU;
+    return ray;
+  }
+
+  const std::vector<gnomon::Triangle>& triangles_;
+  bool robust_;
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+};
+
+// One scene: its rows' common part, both libraries' trees, the measurements.
+class SceneBench {
+ public:
+  SceneBench(const gnomon::cl::Context& context, const std::string& name, std::uint64_t triangles)
+      : context_(context), scene_(gnomon::generate_scene(name, triangles, kSeed)) {
+    common_ = {{"schema", 1},
+               {"bench", "spine"},
+               {"commit", GNOMON_COMMIT},
+               {"device", context.device().name},
+               {"driver", context.device().driver},
+               {"peer", "Embree 3.13.5 MEDIUM"},
+               {"threads", 1},
+               {"clock", "process CPU time"},
+               {"scene", name},
+               {"scene_hash", gnomon::scene_hash(scene_)},
+               {"triangles", scene_.triangles.size()},
+               {"seed", kSeed}};
+  }
+
+  void run() {
+    EmbreeScene fast(scene_.triangles, false);
+    EmbreeScene robust(scene_.triangles, true);
+    build_row(fast);
+    robust.build();
+    const gnomon::Tracer tracer(context_, tree_);
+    const auto primary = gnomon::primary_rays(scene_, kRays, kSeed);
+    const auto hits = tracer.closest(primary).hits;
+    trace_rows("primary", primary, tracer, fast, robust);
+    trace_rows("bounce", gnomon::bounce_rays(scene_, primary, hits, kRays, kSeed), tracer, fast, robust);
+    trace_rows("shadow", gnomon::shadow_rays(scene_, primary, hits, kRays, kSeed), tracer, fast, robust);
+    trace_rows("random", gnomon::random_rays(scene_, kRays, kSeed), tracer, fast, robust);
+  }
+
+ private:
+  void build_row(EmbreeScene& peer) {
+    gnomon::BuildReport report;
+    const auto ours = [&] { tree_ = gnomon::build_device(context_, scene_.triangles, {}, &report); };
+    json row = common_;
+    row["task"] = "build";
+    add_rates(row, measure(ours, [&] { peer.build(); }), static_cast<double>(scene_.triangles.size()), "mtris_per_s");
+    for (const auto& [stage, ms] : report.stages) row["stages_ms"][stage] = ms;
+    const gnomon::Bvh bvh = gnomon::download_bvh(context_, tree_);
+    row["tree_hash"] = gnomon::tree_hash(bvh);
+    row["sah_cost"] = gnomon::stats_of(bvh, {}).sah_cost;
+    std::printf("%s\n", row.dump().c_str());
+  }
+
+  void trace_rows(const char* kind, const std::vector<Ray>& rays, const gnomon::Tracer& tracer,
+                  const EmbreeScene& fast, const EmbreeScene& robust) {
+    const auto count = static_cast<std::uint32_t>(rays.size());
+    const bool any = std::string(kind) == "shadow";
+    const auto ray_buffer = context_.create_buffer("rays", rays.size() * sizeof(Ray));
+    const auto answer_buffer = context_.create_buffer("answers", rays.size() * sizeof(Hit));
+    context_.upload_values<Ray>(ray_buffer, rays);
+    const auto ours = [&] {
+      gnomon::cl::wait(any ? tracer.enqueue_any(ray_buffer.mem.get(), answer_buffer.mem.get(), count)
+                           : tracer.enqueue_closest(ray_buffer.mem.get(), answer_buffer.mem.get(), count));
+    };
+    for (const EmbreeScene* peer : {&fast, &robust}) {
+      std::vector<Hit> hits(rays.size());
+      std::vector<std::uint32_t> occluded(rays.size());
+      const auto theirs = [&] { any ? peer->any(rays, occluded) : peer->closest(rays, hits); };
+      json row = common_;
+      row["task"] = any ? "any hit" : "closest hit";
+      row["rays"] = kind;
+      row["ray_count"] = rays.size();
+      row["peer_mode"] = peer == &robust ? "ROBUST" : "default";
+      add_rates(row, measure(ours, theirs), static_cast<double>(rays.size()), "mrays_per_s");
+      row["differing_answers"] = any ? differing_any(answer_buffer, occluded) : differing_closest(answer_buffer, hits);
+      std::printf("%s\n", row.dump().c_str());
+      std::fflush(stdout);
+    }
+  }
+
+  // Rays for which one side hits and the other misses, or t differs by more than 1e-4 relative.
+  std::uint64_t differing_closest(const gnomon::cl::Buffer& answers, const std::vector<Hit>& peer) const {
+    const auto ours = context_.download_values<Hit>(answers, peer.size());
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < peer.size(); ++i) {
+      const bool hit = ours[i].primitive != GN_NONE;
+      const bool peer_hit = peer[i].primitive != RTC_INVALID_GEOMETRY_ID;
+      const bool apart = hit && peer_hit && std::fabs(ours[i].t - peer[i].t) > 1e-4F * peer[i].t;
+      count += hit != peer_hit || apart ? 1 : 0;
+    }
+    return count;
+  }
+  std::uint64_t differing_any(const gnomon::cl::Buffer& answers, const std::vector<std::uint32_t>& peer) const {
+    const auto ours = context_.download_values<std::uint32_t>(answers, peer.size());
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < peer.size(); ++i) count += ours[i] != peer[i] ? 1 : 0;
+    return count;
+  }
+
+  const gnomon::cl::Context& context_;
+  gnomon::Scene scene_;
+  gnomon::DeviceBvh tree_;
+  json common_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Before the first OpenCL call: PoCL reads it once.
+  setenv("POCL_MAX_PTHREAD_COUNT", "1", 0);
+  try {
+    const char* choice = std::getenv("GNOMON_DEVICE");
+    const gnomon::cl::Context context(
+        gnomon::cl::choose_device(gnomon::cl::list_devices(), choice == nullptr ? "" : choice));
+    std::vector<std::pair<std::string, std::uint64_t>> scenes;
+    for (int i = 1; i + 1 < argc; i += 2) scenes.emplace_back(argv[i], std::strtoull(argv[i + 1], nullptr, 10));
+    if (scenes.empty()) scenes = {{"city", 1000000}, {"atrium", 1000000}};
+    for (const auto& [name, triangles] : scenes) SceneBench(context, name, triangles).run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "spine_bench: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,81 @@
+// gnomon build: builds a tree and says how long each stage took and what came out.
+#include <memory>
+
+#include "build_timing.h"
+#include "commands.h"
+#include "device_choice.h"
+#include "document.h"
+#include "interrupt.h"
+#include "numbers.h"
+#include "scene_source.h"
+
+namespace gnomon::app {
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  DeviceOptions device;
+  BuildOptions build;
+  BuildRuns runs{3, true};
+};
+
+std::string stage_table(const TimedBuild& build) {
+  if (build.median.stages.empty()) return {};
+  Table table({"stage", "ms"});
+  for (const auto& [stage, ms] : build.median.stages) table.add({stage, fixed(ms, 3)});
+  return table.text();
+}
+
+std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const TimedBuild& build) {
+  const double mtris = 1e-3 * static_cast<double>(scene.triangles.size()) / build.total_ms.median;
+  Facts facts;
+  facts.add("device", describe(device));
+  facts.add("scene", describe(scene));
+  facts.add("build", fixed(build.total_ms.median, 2) + " ms (median of " + std::to_string(build.runs.repeat) + ", " +
+                         fixed(build.total_ms.min, 2) + " to " + fixed(build.total_ms.max, 2) + "), " +
+                         fixed(mtris, 2) + " Mtris/s");
+  facts.add("tree", describe(build));
+  facts.add("leaves", fixed(build.stats.mean_leaf, 2) + " triangles on average, " +
+                          std::to_string(build.stats.largest_leaf) + " at most");
+  facts.add("memory", format_bytes(build.tree.bytes()) + " tree, " + format_bytes(build.median.scratch_bytes) +
+                          " scratch");
+  return facts.text();
+}
+
+int run(const Options& options, Console& console) {
+  options.build.check();
+  const cl::Context context = open_device(options.device);
+  const Scene scene = load_scene(options.scene, console);
+  const TimedBuild build = build_timed(context, scene, options.build, options.runs, console.progress());
+  stop_if_interrupted();
+  Json document = start_document("build");
+  add_device(document, &context.device());
+  add_scene(document, options.scene, scene);
+  add_tree_options(document, context.device(), scene.triangles.size(), options.build);
+  add_build(document, build);
+  console.print(document);
+  console.print(facts_of(context.device(), scene, build) + "\n" + stage_table(build));
+  return 0;
+}
+
+}  // namespace
+
+void add_build_command(CLI::App& program, OutputOptions& output, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command =
+      program.add_subcommand("build", "Build a bounding volume hierarchy on a device and time it.");
+  add_scene_options(*command, options->scene);
+  add_count(*command, "--repeat", options->runs.repeat, "timed builds, after one to warm up")->check(CLI::PositiveNumber);
+  add_build_options(*command, options->build);
+  add_device_options(*command, options->device);
+  add_output_options(*command, output);
+  command->footer("Binned surface area heuristic over all three axes. The tree depends on the triangles and the options\n"
+                  "under \"Tree\" alone: its hash is the same on every device. Times by stage are the device's own; the\n"
+                  "total is wall clock and includes the upload.\n\n"
+                  "Examples:\n  gnomon build model.glb\n  gnomon build gen:city:1M --bins 32 --device gpu --json");
+  command->callback([&action, options] {
+    action = [options](Console& console) { return run(*options, console); };
+  });
+}
+
+}  // namespace gnomon::app

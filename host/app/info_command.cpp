@@ -1,0 +1,143 @@
+// gnomon info: what is in a scene, and what a build of it would ask of a device. Works without any device.
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "commands.h"
+#include "document.h"
+#include "gnomon/device/build_device.h"
+#include "numbers.h"
+#include "scene_source.h"
+
+namespace gnomon::app {
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  DeviceOptions device;
+};
+
+// Sums over the buffers of a build, and why it would be refused, if so.
+struct MemoryNeed {
+  std::uint64_t scratch = 0;
+  std::uint64_t tree = 0;
+  std::optional<std::string> refusal;
+};
+
+MemoryNeed memory_need(const cl::DeviceInfo& device, std::uint64_t triangles) {
+  MemoryNeed need;
+  for (const BufferNeed& buffer : build_memory(device, triangles, BuildOptions{})) {
+    (buffer.scratch ? need.scratch : need.tree) += buffer.bytes;
+    if (!need.refusal) need.refusal = cl::why_not_fit(device, buffer.name, buffer.bytes);
+  }
+  if (!need.refusal && need.scratch + need.tree > device.global_memory) {
+    need.refusal = device.name + " has only " + format_bytes(device.global_memory) + " of memory";
+  }
+  return need;
+}
+
+using LightCounts = std::array<std::uint64_t, 4>;
+constexpr std::array<const char*, 4> kLightNames{"point", "spot", "directional", "area"};
+
+LightCounts count_lights(const Scene& scene) {
+  LightCounts counts{};
+  for (const Light& light : scene.lights) counts.at(static_cast<std::size_t>(light.kind)) += 1;
+  return counts;
+}
+
+std::string describe(const Vec3& v) { return fixed(v[0], 3) + " " + fixed(v[1], 3) + " " + fixed(v[2], 3); }
+
+std::string camera_names(const Scene& scene) {
+  std::string names;
+  for (const Camera& camera : scene.cameras) {
+    names += (names.empty() ? " (" : ", ") + (camera.name.empty() ? "unnamed" : camera.name);
+  }
+  return std::to_string(scene.cameras.size()) + (names.empty() ? "" : names + ")");
+}
+
+std::string light_counts(const Scene& scene) {
+  const LightCounts counts = count_lights(scene);
+  std::string kinds;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] > 0) kinds += (kinds.empty() ? " (" : ", ") + std::to_string(counts[i]) + " " + kLightNames[i];
+  }
+  return std::to_string(scene.lights.size()) + (kinds.empty() ? "" : kinds + ")");
+}
+
+std::string describe(const MemoryNeed& need, const cl::DeviceInfo& device) {
+  return format_bytes(need.tree) + " tree and " + format_bytes(need.scratch) + " scratch on " + device.name +
+         (need.refusal ? "; does not fit: " + *need.refusal : "; fits");
+}
+
+Json to_json(const Scene& scene) {
+  Json lights = Json::object();
+  const LightCounts counts = count_lights(scene);
+  for (std::size_t i = 0; i < counts.size(); ++i) lights[kLightNames[i]] = counts[i];
+  Json cameras = Json::array();
+  for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
+  const Bounds bounds = bounds_of(scene);
+  Json box = nullptr;
+  if (!scene.triangles.empty()) box = {{"lo", bounds.lo}, {"hi", bounds.hi}};
+  return {{"materials", scene.materials.size()}, {"cameras", cameras}, {"lights", lights}, {"bounds", box}};
+}
+
+std::string facts_of(const Options& options, const Scene& scene) {
+  Facts facts;
+  facts.add("scene", options.scene.source + (scene.name.empty() ? "" : " (" + scene.name + ")"));
+  facts.add("triangles", std::to_string(scene.triangles.size()));
+  facts.add("dropped", std::to_string(scene.report.dropped()) + " (" +
+                           std::to_string(scene.report.non_finite_dropped) + " not finite, " +
+                           std::to_string(scene.report.zero_area_dropped) + " without area)");
+  facts.add("hash", scene_hash(scene));
+  if (!scene.triangles.empty()) {
+    const Bounds bounds = bounds_of(scene);
+    facts.add("bounds", describe(bounds.lo) + "  to  " + describe(bounds.hi));
+  }
+  facts.add("materials", std::to_string(scene.materials.size()));
+  facts.add("cameras", camera_names(scene));
+  facts.add("lights", light_counts(scene));
+  return facts.text();
+}
+
+int run(const Options& options, Console& console) {
+  const auto devices = cl::list_devices();
+  const cl::DeviceInfo* const device = devices.empty() ? nullptr : &cl::choose_device(devices, options.device.choice);
+  const Scene scene = load_scene(options.scene, console);
+  Json document = start_document("info");
+  add_device(document, device);
+  add_scene(document, options.scene, scene);
+  document.update(to_json(scene));
+  document["build_memory"] = nullptr;
+  std::string memory = "no OpenCL device here to ask";
+  if (device != nullptr) {
+    const MemoryNeed need = memory_need(*device, scene.triangles.size());
+    document["build_memory"] = {{"tree_bytes", need.tree},
+                                {"scratch_bytes", need.scratch},
+                                {"fits", !need.refusal.has_value()},
+                                {"reason", need.refusal ? Json(*need.refusal) : Json(nullptr)}};
+    memory = describe(need, *device);
+  }
+  console.print(document);
+  console.print(facts_of(options, scene) + "build needs  " + memory + "\n");
+  return 0;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& program, OutputOptions& output, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = program.add_subcommand("info", "Say what is in a scene and what building it will need.");
+  add_scene_options(*command, options->scene);
+  command
+      ->add_option("--device", options->device.choice, "the device whose memory to compare with, as for build")
+      ->envname("GNOMON_DEVICE")
+      ->type_name("D");
+  add_output_options(*command, output);
+  command->footer("Needs no OpenCL device; with one, it says whether a build would fit.\n\n"
+                  "Examples:\n  gnomon info model.glb\n  gnomon info gen:forest:1M --json");
+  command->callback([&action, options] {
+    action = [options](Console& console) { return run(*options, console); };
+  });
+}
+
+}  // namespace gnomon::app

@@ -1,0 +1,105 @@
+// gnomon: the program. Parses, runs one subcommand, turns errors into messages and exit statuses.
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "commands.h"
+#include "exit_status.h"
+#include "interrupt.h"
+#include "version.h"
+
+namespace gnomon::app {
+namespace {
+
+const char* const kFooter =
+    "SCENE is a .gltf, .glb or .obj file, or gen:NAME[:TRIANGLES[:SEED]] for a generated one (gnomon scene --list).\n"
+    "Data goes to stdout, notes and progress to stderr. Counts may be written 250000, 250k, 1M or 1e6.\n"
+    "\n"
+    "A first round:\n"
+    "  gnomon devices\n"
+    "  gnomon build gen:city:100k\n"
+    "  gnomon trace gen:city:100k --rays bounce\n"
+    "  gnomon validate gen:city:100k\n"
+    "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png\n"
+    "\n"
+    "Exit status: 0 ok, 1 failure, 2 wrong usage, 3 no device, 4 bad scene or ray file, 5 out of memory,\n"
+    "6 validation found a mismatch, 130 interrupted.\n"
+    "\n"
+    "Environment: GNOMON_DEVICE (as --device), XDG_CACHE_HOME (compiled kernels go to its folder gnomon),\n"
+    "GNOMON_KERNELS (a folder to read kernel sources from), NO_COLOR.";
+
+int status_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kInvalidArgument: return kUsage;
+    case ErrorCode::kIo: return kFailure;
+    case ErrorCode::kNoDevice: return kNoDevice;
+    case ErrorCode::kBadScene: return kBadScene;
+    case ErrorCode::kOutOfMemory: return kOutOfMemory;
+    case ErrorCode::kDevice: return kFailure;
+    case ErrorCode::kCancelled: return kInterrupted;
+  }
+  return kFailure;
+}
+
+// The subcommand the command line got to, for the hint after a usage error.
+std::string hint(const CLI::App& program) {
+  const auto chosen = program.get_subcommands();
+  return "see gnomon " + (chosen.empty() ? std::string() : chosen.front()->get_name() + " ") + "--help";
+}
+
+int run_action(const Action& action, Console& console) {
+  try {
+    return action(console);
+  } catch (const Error& error) {
+    console.error(error.what());
+    return status_of(error.code());
+  } catch (const std::bad_alloc&) {
+    console.error("out of memory on the host; use a smaller scene or fewer rays");
+    return kOutOfMemory;
+  } catch (const std::exception& error) {
+    console.error(error.what());
+    return kFailure;
+  }
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("gnomon builds bounding volume hierarchies on any OpenCL device, traces rays through them and "
+                   "checks the answers.",
+                   "gnomon");
+  OutputOptions output;
+  Action action;
+  program.get_formatter()->column_width(36);
+  program.set_version_flag("--version", "gnomon " + version() + " (" + commit() + ")");
+  program.require_subcommand(1);
+  add_devices_command(program, output, action);
+  add_scene_command(program, output, action);
+  add_info_command(program, output, action);
+  add_build_command(program, output, action);
+  add_trace_command(program, output, action);
+  add_validate_command(program, output, action);
+  add_render_command(program, output, action);
+  program.footer(kFooter);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return program.exit(error);  // help
+    Console(output).error(std::string(error.what()) + "\n" + hint(program));
+    return kUsage;
+  }
+  catch_interrupts();
+  Console console(output);
+  return run_action(action, console);
+}
+
+}  // namespace
+}  // namespace gnomon::app
+
+int main(int argc, char** argv) {
+  try {
+    return gnomon::app::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "gnomon: error: %s\n", error.what());
+    return gnomon::app::kFailure;
+  }
+}

@@ -1,0 +1,147 @@
+// gnomon render: a picture of a scene, and one of how much work its rays were.
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "build_timing.h"
+#include "commands.h"
+#include "device_choice.h"
+#include "document.h"
+#include "gnomon/render/heat_map.h"
+#include "gnomon/render/png.h"
+#include "gnomon/render/render.h"
+#include "gnomon/render/tone.h"
+#include "interrupt.h"
+#include "numbers.h"
+#include "scene_source.h"
+
+namespace gnomon::app {
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  DeviceOptions device;
+  BuildOptions build;
+  RenderOptions render;
+  double exposure = 0.0;  // in steps of two around the automatic one
+  std::string file, heat_map;
+};
+
+struct Outcome {
+  RenderResult result;
+  double exposure = 1.0;
+  double seconds = 0.0;
+  HeatScale heat;
+  [[nodiscard]] std::uint64_t rays() const { return result.camera_rays + result.other_rays; }
+};
+
+Outcome render_timed(const Options& options, const cl::Context& context, const TimedBuild& build, const Scene& scene,
+                     const Progress& progress) {
+  Outcome outcome;
+  const auto start = std::chrono::steady_clock::now();
+  outcome.result = render(context, build.tree, scene, options.render, progress);
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  outcome.exposure = auto_exposure(outcome.result.picture) * std::exp2(options.exposure);
+  outcome.heat = heat_scale(outcome.result.boxes);
+  return outcome;
+}
+
+void write_pictures(const Options& options, const Outcome& outcome) {
+  const RenderResult& result = outcome.result;
+  const RgbImage picture = tone_map(result.picture, outcome.exposure);
+  stop_if_interrupted();
+  write_png(picture, options.file);
+  if (options.heat_map.empty()) return;
+  write_png(heat_map(options.render.width, options.render.height, result.boxes, outcome.heat), options.heat_map);
+}
+
+void add_outcome(Json& document, const Options& options, const Outcome& outcome) {
+  Json& chosen = document["options"];
+  chosen["width"] = options.render.width;
+  chosen["height"] = options.render.height;
+  chosen["samples"] = options.render.samples;
+  chosen["seed"] = options.render.seed;
+  chosen["exposure"] = options.exposure;
+  document["picture"] = options.file;
+  document["render_notes"] = outcome.result.notes;
+  document["seconds"] = outcome.seconds;
+  document["device_seconds"] = 1e-3 * outcome.result.kernel_ms;
+  document["rays"] = outcome.rays();
+  document["camera_rays"] = outcome.result.camera_rays;
+  document["heat_map"] = nullptr;
+  if (options.heat_map.empty()) return;
+  document["heat_map"] = {{"file", options.heat_map},
+                          {"scale_max", outcome.heat.white},
+                          {"max_boxes", outcome.heat.max},
+                          {"mean_boxes", outcome.heat.mean}};
+}
+
+std::string facts_of(const Options& options, const cl::DeviceInfo& device, const Scene& scene, const TimedBuild& build,
+                     const Outcome& outcome) {
+  Facts facts;
+  facts.add("device", describe(device));
+  facts.add("scene", describe(scene));
+  facts.add("tree", describe(build));
+  facts.add("picture", options.file + ", " + std::to_string(options.render.width) + " x " +
+                           std::to_string(options.render.height) + ", " + std::to_string(options.render.samples) +
+                           " samples a pixel");
+  if (!options.heat_map.empty()) {
+    facts.add("heat map", options.heat_map + ", 0 (black) to " + fixed(outcome.heat.white, 0) +
+                              " boxes a camera ray (pale), " + fixed(outcome.heat.mean, 1) + " on average, " +
+                              fixed(outcome.heat.max, 0) + " at most");
+  }
+  facts.add("rays", std::to_string(outcome.rays()) + " in " + fixed(outcome.seconds, 2) + " s");
+  return facts.text();
+}
+
+int run(Options options, Console& console) {
+  options.render.heat_map = !options.heat_map.empty();
+  options.build.check();
+  options.render.check();
+  const cl::Context context = open_device(options.device);
+  const Scene scene = load_scene(options.scene, console);
+  const TimedBuild build = build_timed(context, scene, options.build, {1, false}, console.progress());
+  const Outcome outcome = render_timed(options, context, build, scene, console.progress());
+  write_pictures(options, outcome);
+  for (const std::string& note : outcome.result.notes) console.note(note);
+  Json document = start_document("render");
+  add_device(document, &context.device());
+  add_scene(document, options.scene, scene);
+  add_tree_options(document, context.device(), scene.triangles.size(), options.build);
+  add_build(document, build);
+  add_outcome(document, options, outcome);
+  console.print(document);
+  console.print(facts_of(options, context.device(), scene, build, outcome));
+  return 0;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& program, OutputOptions& output, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = program.add_subcommand("render", "Make a picture of a scene, and a heat map of the work.");
+  add_scene_options(*command, options->scene);
+  command->add_option("-o,--output", options->file, "the PNG file to write")->required()->type_name("PNG");
+  command->add_option("--heat-map", options->heat_map, "also a picture of the boxes tested by each pixel's camera rays")
+      ->type_name("PNG");
+  add_count(*command, "--width", options->render.width, "in pixels, up to 16384");
+  add_count(*command, "--height", options->render.height, "in pixels, up to 16384");
+  add_count(*command, "--samples", options->render.samples, "camera rays a pixel, up to 4096; more is smoother");
+  add_count(*command, "--seed", options->render.seed, "the same seed gives the same picture");
+  command->add_option("--exposure", options->exposure, "brighter or darker than by itself, in steps of two")
+      ->check(CLI::Range(-20.0, 20.0))
+      ->type_name("EV")
+      ->capture_default_str();
+  add_build_options(*command, options->build);
+  add_device_options(*command, options->device);
+  add_output_options(*command, output);
+  command->footer("Through the scene's first camera (else one that sees all of it), lit by its lights (else by a sun):\n"
+                  "direct light, sky, matt surfaces. Ctrl-C leaves no half picture.\n\n"
+                  "Examples:\n  gnomon render model.glb -o model.png\n"
+                  "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png --samples 32");
+  command->callback([&action, options] {
+    action = [options](Console& console) { return run(*options, console); };
+  });
+}
+
+}  // namespace gnomon::app

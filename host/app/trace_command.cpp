@@ -1,0 +1,152 @@
+// gnomon trace: sends a batch of rays through a tree and says how fast and how much work that was.
+#include <memory>
+#include <optional>
+
+#include "build_timing.h"
+#include "commands.h"
+#include "device_choice.h"
+#include "document.h"
+#include "interrupt.h"
+#include "numbers.h"
+#include "ray_batch.h"
+#include "scene_source.h"
+#include "trace_timing.h"
+
+namespace gnomon::app {
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  DeviceOptions device;
+  BuildOptions build;
+  std::string kind = "primary";
+  std::uint64_t count = 1'000'000;
+  std::uint64_t seed = 1;
+  std::string query;  // closest, any or empty: as the kind asks
+  std::uint64_t repeat = 5;
+  std::string rays_in, rays_out, hits_out;
+};
+
+// Whether to ask for any hit only. Files hold closest hits, so writing one asks for those.
+bool wants_any_hit(const Options& options) {
+  if (options.query == "any" && !options.hits_out.empty()) {
+    throw Error(ErrorCode::kInvalidArgument, "--hits-out writes closest hits: leave out --query any");
+  }
+  if (!options.query.empty()) return options.query == "any";
+  return options.hits_out.empty() && options.rays_in.empty() && asks_any_hit(*ray_kind_from(options.kind));
+}
+
+std::vector<Ray> rays_of(const Options& options, const Scene& scene, const cl::Context& context, const DeviceBvh& tree,
+                         const Progress& progress) {
+  if (options.rays_in.empty()) {
+    return make_rays(*ray_kind_from(options.kind), scene, Tracer(context, tree), options.count, options.seed, progress);
+  }
+  try {
+    return read_rays(options.rays_in);
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kIo) throw Error(ErrorCode::kBadScene, error.what());
+    throw;
+  }
+}
+
+void add_trace(Json& document, const Options& options, const TimedTrace& trace, std::size_t rays, bool any_hit) {
+  Json& chosen = document["options"];
+  chosen["rays"] = options.rays_in.empty() ? Json(options.kind) : Json(nullptr);
+  chosen["rays_in"] = options.rays_in.empty() ? Json(nullptr) : Json(options.rays_in);
+  chosen["count"] = options.count;
+  chosen["seed"] = options.seed;
+  chosen["query"] = any_hit ? "any" : "closest";
+  chosen["repeat"] = options.repeat;
+  document["rays"] = rays;
+  document["hits"] = trace.hit_count;
+  document["invalid_rays"] = trace.invalid_rays;
+  document["mrays_per_s"] = to_json(trace.mrays_per_s);
+  document["clock"] = trace.device_clock ? "device" : "wall";
+  document["seconds"] = trace.seconds;
+  document["wall_seconds"] = trace.wall_seconds;
+  document["boxes_per_ray"] = trace.boxes_per_ray;
+  document["triangles_per_ray"] = trace.triangles_per_ray;
+}
+
+std::string facts_of(const Options& options, const cl::DeviceInfo& device, const Scene& scene, const TimedBuild& build,
+                     const TimedTrace& trace, std::size_t rays, bool any_hit) {
+  const double share = rays == 0 ? 0.0 : 100.0 * static_cast<double>(trace.hit_count) / static_cast<double>(rays);
+  Facts facts;
+  facts.add("device", describe(device));
+  facts.add("scene", describe(scene));
+  facts.add("tree", describe(build));
+  facts.add("rays", std::to_string(rays) + " " + (options.rays_in.empty() ? options.kind : "from " + options.rays_in) +
+                        ", " + (any_hit ? "any hit" : "closest hit"));
+  facts.add("hits", std::to_string(trace.hit_count) + " (" + fixed(share, 1) + " %)");
+  if (trace.invalid_rays > 0) facts.add("invalid", std::to_string(trace.invalid_rays) + " rays that miss for that");
+  facts.add("speed", fixed(trace.mrays_per_s.median, 3) + " Mrays/s (median of " +
+                         std::to_string(trace.mrays_per_s.count) + ", " + fixed(trace.mrays_per_s.min, 3) + " to " +
+                         fixed(trace.mrays_per_s.max, 3) + "; " +
+                         (trace.device_clock ? "device time)" : "wall clock, transfers included)"));
+  facts.add("work", fixed(trace.boxes_per_ray, 2) + " boxes and " + fixed(trace.triangles_per_ray, 2) +
+                        " triangles a ray");
+  return facts.text();
+}
+
+int run(const Options& options, Console& console) {
+  options.build.check();
+  const bool any_hit = wants_any_hit(options);
+  const cl::Context context = open_device(options.device);
+  const Scene scene = load_scene(options.scene, console);
+  const TimedBuild build = build_timed(context, scene, options.build, {1, true}, console.progress());
+  const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
+  stop_if_interrupted();
+  const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, options.repeat, console.progress());
+  stop_if_interrupted();
+  if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
+  if (!options.hits_out.empty()) write_hits(options.hits_out, trace.hits);
+  Json document = start_document("trace");
+  add_device(document, &context.device());
+  add_scene(document, options.scene, scene);
+  add_tree_options(document, context.device(), scene.triangles.size(), options.build);
+  add_build(document, build);
+  add_trace(document, options, trace, rays.size(), any_hit);
+  console.print(document);
+  console.print(facts_of(options, context.device(), scene, build, trace, rays.size(), any_hit));
+  return 0;
+}
+
+const char* const kFiles =
+    "Files hold raw little-endian records and nothing else:\n"
+    "  a ray, 32 bytes: origin x y z, tmin, direction x y z, tmax, all float32\n"
+    "  a hit, 16 bytes: t, u, v as float32, triangle as uint32; a miss has triangle 0xffffffff and t infinite\n"
+    "The hit of a ray has the ray's place. The point hit is origin + t * direction = (1-u-v) v0 + u v1 + v v2.\n";
+
+}  // namespace
+
+void add_trace_command(CLI::App& program, OutputOptions& output, Action& action) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = program.add_subcommand("trace", "Trace rays through a scene's tree and time it.");
+  add_scene_options(*command, options->scene);
+  CLI::Option* const kind = command->add_option("--rays", options->kind, "which kind of rays to make")
+                                ->check(CLI::IsMember(ray_kind_names()))
+                                ->type_name("KIND")
+                                ->capture_default_str();
+  add_count(*command, "--count", options->count, "so many rays; bounce and shadow rays: at most");
+  add_count(*command, "--seed", options->seed, "for the rays that are drawn at random");
+  command->add_option("--rays-in", options->rays_in, "trace the rays of this file instead")
+      ->excludes(kind)
+      ->type_name("FILE");
+  command->add_option("--rays-out", options->rays_out, "write the rays traced")->type_name("FILE");
+  command->add_option("--hits-out", options->hits_out, "write the closest hits")->type_name("FILE");
+  command->add_option("--query", options->query, "closest or any; default: any for shadow and parallel, else closest")
+      ->check(CLI::IsMember({"closest", "any"}))
+      ->type_name("Q");
+  add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")->check(CLI::PositiveNumber);
+  add_build_options(*command, options->build);
+  add_device_options(*command, options->device);
+  add_output_options(*command, output);
+  command->footer(explain_ray_kinds() + "\n" + kFiles +
+                  "\nExamples:\n  gnomon trace model.glb --rays bounce --count 2M\n"
+                  "  gnomon trace model.glb --rays-in my.rays --hits-out my.hits");
+  command->callback([&action, options] {
+    action = [options](Console& console) { return run(*options, console); };
+  });
+}
+
+}  // namespace gnomon::app

@@ -1,0 +1,42 @@
+// A picture of a scene through a tree on a device: camera rays, direct light by shadow rays, a sky, matt surfaces.
+// Not a path tracer: light that bounced is a dim guess. Feeds the command line; the tree is seen at work, and a leak
+// in it would show as a speck.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gnomon/base/progress.h"
+#include "gnomon/device/trace_device.h"
+#include "gnomon/render/picture.h"
+
+namespace gnomon {
+
+struct RenderOptions {
+  std::uint32_t width = 1280;   // pixels, 1..16384
+  std::uint32_t height = 720;
+  std::uint32_t samples = 4;    // camera rays per pixel, 1..4096
+  std::uint64_t seed = 1;       // equal seeds, equal pictures
+  bool heat_map = false;        // also count the boxes each camera ray tests; compiles a second program
+
+  // Throws Error{kInvalidArgument} naming the option, its value and its range.
+  void check() const;
+};
+
+struct RenderResult {
+  Picture picture;
+  std::vector<float> boxes;          // with heat_map: mean boxes tested by a pixel's camera rays
+  std::uint64_t camera_rays = 0;
+  std::uint64_t other_rays = 0;      // to lights and for the ambient term
+  double kernel_ms = 0.0;            // of all rays; 0 without profiling
+  std::vector<std::string> notes;    // what was assumed, one sentence each
+};
+
+// Renders through the scene's first camera, or default_camera(scene). `tree` must be built over scene.triangles.
+// Works in tiles, so memory beside the picture does not grow with it. Sets of more than eight lights are sampled.
+// Throws Error: kInvalidArgument (options), kOutOfMemory, kDevice, kCancelled.
+[[nodiscard]] RenderResult render(const cl::Context& context, const DeviceBvh& tree, const Scene& scene,
+                                  const RenderOptions& options = {}, const Progress& progress = {});
+
+}  // namespace gnomon

@@ -1,0 +1,27 @@
+#include "gnomon/render/sky.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gnomon {
+namespace {
+
+const Point kHorizon{0.86, 0.93, 1.00};
+const Point kZenith{0.22, 0.42, 0.82};
+const Point kGround{0.20, 0.18, 0.15};
+const Point kBounced{0.50, 0.48, 0.45};
+constexpr double kHaze = 0.04;  // height over which ground turns into horizon
+
+Point mix(const Point& a, const Point& b, double share) { return a + share * (b - a); }
+
+}  // namespace
+
+Point Sky::radiance(const Point& direction) const {
+  const double height = direction.y;
+  if (height < 0.0) return level_ * mix(kHorizon, kGround, std::min(1.0, -height / kHaze));
+  return level_ * mix(kHorizon, kZenith, std::sqrt(std::min(1.0, height)));
+}
+
+Point Sky::bounced() const { return level_ * kBounced; }
+
+}  // namespace gnomon

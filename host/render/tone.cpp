@@ -1,0 +1,54 @@
+#include "gnomon/render/tone.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gnomon/render/vector_math.h"
+
+namespace gnomon {
+namespace {
+
+constexpr double kMiddleGrey = 0.20;
+constexpr double kWhite = 9.0;      // what is shown as full white, in units of middle grey / kMiddleGrey
+constexpr double kDarkest = 1e-3;   // of the brightest: darker pixels count as this dark in the mean
+
+double filmic(double x) {
+  constexpr double a = 0.22, b = 0.30, c = 0.10, d = 0.20, e = 0.01, f = 0.30;
+  return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f;
+}
+
+double luminance_of(const Vec3& pixel) {
+  const double value = luminance(to_point(pixel));
+  return std::isfinite(value) ? value : 0.0;
+}
+
+}  // namespace
+
+std::uint8_t to_srgb_byte(double linear) {
+  const double x = linear > 0.0 ? std::min(linear, 1.0) : 0.0;
+  const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255.0 * encoded));
+}
+
+double auto_exposure(const Picture& picture) {
+  double brightest = 0.0;
+  for (const Vec3& pixel : picture.pixels) brightest = std::max(brightest, luminance_of(pixel));
+  if (brightest <= 0.0) return 1.0;
+  double sum = 0.0;
+  for (const Vec3& pixel : picture.pixels) sum += std::log(std::max(luminance_of(pixel), kDarkest * brightest));
+  return kMiddleGrey / std::exp(sum / static_cast<double>(picture.pixels.size()));
+}
+
+RgbImage tone_map(const Picture& picture, double exposure) {
+  RgbImage image{picture.width, picture.height, {}};
+  image.bytes.reserve(3 * picture.pixels.size());
+  for (const Vec3& pixel : picture.pixels) {
+    for (const float channel : pixel) {
+      const double light = exposure * static_cast<double>(channel);
+      image.bytes.push_back(std::isfinite(light) ? to_srgb_byte(filmic(std::max(light, 0.0)) / filmic(kWhite)) : 0);
+    }
+  }
+  return image;
+}
+
+}  // namespace gnomon

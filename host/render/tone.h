@@ -1,0 +1,18 @@
+// From linear light to what a screen shows. Not for heat maps. Feeds the command line.
+#pragma once
+
+#include "gnomon/render/picture.h"
+
+namespace gnomon {
+
+// The factor that brings the picture's logarithmic mean luminance to a middle grey; 1 for a black picture.
+[[nodiscard]] double auto_exposure(const Picture& picture);
+
+// Times exposure, through a filmic curve (Hable 2010: linear toe, soft shoulder) on each channel, to sRGB.
+// Values that are not finite come out black.
+[[nodiscard]] RgbImage tone_map(const Picture& picture, double exposure);
+
+// One linear value in [0, 1] as an sRGB byte (IEC 61966-2-1).
+[[nodiscard]] std::uint8_t to_srgb_byte(double linear);
+
+}  // namespace gnomon

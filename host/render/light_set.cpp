@@ -10,7 +10,7 @@ namespace gnomon {
 namespace {
 
 constexpr double kFairWay = 0.3;    // of the bounds' diagonal
-constexpr double kSkyShare = 0.22;  // sky radiance, as a share of the lights' irradiance
+constexpr double kSkyShare = 0.16;  // sky radiance, as a share of the lights' irradiance
 
 // The sun of ray_set.h's shadow rays, so that pictures and measured rays agree.
 Light default_sun() {

@@ -24,6 +24,7 @@ class LightSet {
   LightSet(const Scene& scene, const Bounds& bounds);
 
   [[nodiscard]] std::size_t size() const { return emitters_.size(); }
+  [[nodiscard]] bool is_area(std::size_t light) const { return emitters_[light].light.kind == LightKind::kArea; }
   // What was assumed, for the user; empty when nothing was.
   [[nodiscard]] const std::string& note() const { return note_; }
   // How bright the sky should be beside these lights: a share of what they give a surface a fair way off.

@@ -1,6 +1,7 @@
 #include "gnomon/render/render.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -15,19 +16,25 @@ namespace gnomon {
 namespace {
 
 constexpr std::uint32_t kTileRays = 1U << 18U;    // camera rays traced at a time
-constexpr std::size_t kLightsPerSample = 8;
+constexpr std::uint32_t kLights = 8;              // shadow rays from a place the camera sees, at most
 constexpr double kOffset = 1e-5;                  // of shadow rays' origins, in diagonals, as in ray_set.h
 constexpr double kShadowReach = 0.9999;           // of the distance to a light: its own surface does not hide it
 constexpr double kOpenness = 0.03;                // diagonals at which a surface opposite dims ambient light by half
 
 // What sample_point's numbers are for.
-enum Purpose : std::uint32_t { kPixel, kAmbient, kLightChoice, kLightPoint };
+enum Purpose : std::uint32_t {
+  kPixel,
+  kAmbient,
+  kBouncedChoice,
+  kLightPoints,  // two for each light: which one, and where on it
+  kBouncedPoints = kLightPoints + 2 * kLights,
+};
 
-// Where a camera ray hit, moved off the surface to the side it came from.
+// Where a ray hit, moved off the surface to the side it came from.
 struct Place {
   Point position;
   Point normal;  // unit, on that side
-  Point albedo;
+  Point weight;  // by which light from here counts in the pixel: the surface's reflectance so far
   std::uint32_t pixel;   // within the tile
   std::uint32_t sample;
 };
@@ -50,6 +57,13 @@ Ray make_ray(const Point& origin, const Point& direction, double tmax) {
   }
   ray.tmax = static_cast<float>(tmax);
   return ray;
+}
+
+// Progress of a part of the work as progress of the whole.
+Progress part_of(const Progress& whole, double first, double last) {
+  return [&whole, first, last](std::string_view stage, double done) {
+    return !whole || whole(stage, first + (last - first) * done);
+  };
 }
 
 class Renderer {
@@ -78,9 +92,8 @@ class Renderer {
     if (options_.heat_map) result_.boxes.resize(pixels);
     const std::vector<Tile> tiles = cut_tiles();
     for (std::size_t i = 0; i < tiles.size(); ++i) {
-      render_tile(tiles[i], [&](std::string_view, double done) {
-        return !progress || progress("render", (static_cast<double>(i) + done) / static_cast<double>(tiles.size()));
-      });
+      const auto share = [&](std::size_t tile) { return static_cast<double>(tile) / static_cast<double>(tiles.size()); };
+      render_tile(tiles[i], part_of(progress, share(i), share(i + 1)));
     }
     return std::move(result_);
   }
@@ -108,15 +121,13 @@ class Renderer {
 
   void render_tile(const Tile& tile, const Progress& progress) {
     sums_.assign(std::size_t{tile.width} * tile.height, Point{0.0});
-    report(progress, "camera", 0.0);
+    report(progress, "render", 0.0);
     const std::vector<Place> places = trace_camera(tile);
-    report(progress, "ambient", 0.2);
-    add_ambient(tile, places);
-    const std::size_t rounds = std::min(kLightsPerSample, lights_.size());
-    for (std::size_t round = 0; round < rounds; ++round) {
-      report(progress, "lights", 0.4 + 0.6 * static_cast<double>(round) / static_cast<double>(rounds));
-      add_lights(tile, places, round, rounds);
-    }
+    add_all_lights(tile, places, part_of(progress, 0.1, 0.6));
+    report(progress, "render", 0.6);
+    const std::vector<Place> seen = add_ambient(tile, places);
+    report(progress, "render", 0.8);
+    add_one_light(tile, seen);
     for (std::uint32_t pixel = 0; pixel < sums_.size(); ++pixel) {
       result_.picture.pixels[picture_pixel(tile, pixel)] = to_vec3(sums_[pixel] / static_cast<double>(options_.samples));
     }
@@ -168,9 +179,9 @@ class Renderer {
     return {surface + kOffset * diagonal_ * normal, normal, to_point(material_of(hit).base_color), pixel, sample};
   }
 
-  // One ray a place, cosine-weighted: sky where it is free; else a guess at bounced light, dimmer where the surface
-  // opposite is near (Zhukov et al. 1998, obscurances).
-  void add_ambient(const Tile& tile, const std::vector<Place>& places) {
+  // One ray a place, cosine-weighted: it sees the sky, or a surface whose own light is for the caller to add. What
+  // bounced more often is a guess, dimmer where that surface is near (Zhukov et al. 1998, obscurances).
+  [[nodiscard]] std::vector<Place> add_ambient(const Tile& tile, const std::vector<Place>& places) {
     std::vector<Ray> rays;
     rays.reserve(places.size());
     for (const Place& place : places) {
@@ -179,40 +190,92 @@ class Renderer {
     }
     const TraceResult traced = tracer_.closest(rays);
     count(traced, rays.size(), result_.other_rays);
+    std::vector<Place> seen;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const Hit& hit = traced.hits[i];
-      Point light = sky_.radiance(to_point(rays[i].direction));
-      if (hit.primitive != GN_NONE) {
-        const double open = static_cast<double>(hit.t) / (static_cast<double>(hit.t) + kOpenness * diagonal_);
-        light = open * sky_.bounced() * to_point(material_of(hit).base_color);
+      if (hit.primitive == GN_NONE) {
+        sums_[places[i].pixel] += places[i].weight * sky_.radiance(to_point(rays[i].direction));
+        continue;
       }
-      sums_[places[i].pixel] += places[i].albedo * light;
+      Place place = place_of(rays[i], hit, places[i].pixel, places[i].sample);
+      place.weight *= places[i].weight;
+      const double open = static_cast<double>(hit.t) / (static_cast<double>(hit.t) + kOpenness * diagonal_);
+      sums_[place.pixel] += open * place.weight * sky_.bounced();
+      seen.push_back(place);
+    }
+    return seen;
+  }
+
+  // A shadow ray from each place to each light, or to one of each share of them when there are many.
+  void add_all_lights(const Tile& tile, const std::vector<Place>& places, const Progress& progress) {
+    const std::size_t rounds = std::min<std::size_t>(kLights, lights_.size());
+    const double share = static_cast<double>(lights_.size()) / static_cast<double>(rounds);
+    for (std::uint32_t round = 0; round < rounds; ++round) {
+      report(progress, "render", static_cast<double>(round) / static_cast<double>(rounds));
+      for (const Place& place : places) {
+        const std::size_t light = light_of_round(tile, place, round, rounds, kLightPoints);
+        const auto lit = sample_light(tile, place, light, kLightPoints + 2 * round + 1);
+        if (lit) queue(place, *lit, share);
+      }
+      trace_queue();
     }
   }
 
-  // One shadow ray a place to one light: light number `round`, or one of its share when there are many.
-  void add_lights(const Tile& tile, const std::vector<Place>& places, std::size_t round, std::size_t rounds) {
-    std::vector<Ray> rays;
-    std::vector<Pending> pending;
-    const double weight = static_cast<double>(lights_.size()) / static_cast<double>(rounds);
+  // One shadow ray from each place, to the light that would give it most if it were free, by chance: each in
+  // proportion (Talbot et al. 2005). Beyond some lights, a few drawn at random compete.
+  void add_one_light(const Tile& tile, const std::vector<Place>& places) {
+    const std::size_t rivals = std::min<std::size_t>(kLights, lights_.size());
+    const double share = static_cast<double>(lights_.size()) / static_cast<double>(rivals);
     for (const Place& place : places) {
-      const auto purpose = static_cast<std::uint32_t>(2 * round);
-      std::size_t light = round;
-      if (rounds < lights_.size()) {
-        const double choice = random_point(tile, place, kLightChoice + purpose).x;
-        light = std::min(static_cast<std::size_t>((static_cast<double>(round) + choice) * weight), lights_.size() - 1);
+      const double draw = random_point(tile, place, kBouncedChoice).x;
+      double sum = 0.0;
+      std::array<std::optional<LightSample>, kLights> lit;
+      for (std::uint32_t i = 0; i < rivals; ++i) {
+        const std::size_t light = light_of_round(tile, place, i, rivals, kBouncedPoints);
+        lit[i] = sample_light(tile, place, light, kBouncedPoints + 2 * i + 1);
+        if (lit[i]) sum += luminance(lit[i]->irradiance);
       }
-      const auto lit = lights_.sample(light, place.position, place.normal,
-                                      random_point(tile, place, kLightPoint + purpose));
-      if (!lit) continue;
-      rays.push_back(make_ray(place.position, lit->direction, kShadowReach * lit->distance));
-      pending.push_back({place.pixel, weight / kPi * place.albedo * lit->irradiance});
+      double before = 0.0;
+      for (std::uint32_t i = 0; i < rivals; ++i) {
+        const double own = lit[i] ? luminance(lit[i]->irradiance) : 0.0;
+        if (own > 0.0 && draw * sum < before + own) {
+          queue(place, *lit[i], share * sum / own);
+          break;
+        }
+        before += own;
+      }
     }
-    const TraceResult traced = tracer_.any(rays);
-    count(traced, rays.size(), result_.other_rays);
-    for (std::size_t i = 0; i < pending.size(); ++i) {
-      if (traced.occluded[i] == 0) sums_[pending[i].pixel] += pending[i].radiance;
+    trace_queue();
+  }
+
+  [[nodiscard]] std::size_t light_of_round(const Tile& tile, const Place& place, std::uint32_t round,
+                                           std::size_t rounds, std::uint32_t purpose) const {
+    if (rounds == lights_.size()) return round;
+    const double choice = random_point(tile, place, purpose + 2 * round).x + round;
+    return std::min(static_cast<std::size_t>(choice * static_cast<double>(lights_.size()) / static_cast<double>(rounds)),
+                    lights_.size() - 1);
+  }
+
+  [[nodiscard]] std::optional<LightSample> sample_light(const Tile& tile, const Place& place, std::size_t light,
+                                                        std::uint32_t purpose) const {
+    const Point2 point = lights_.is_area(light) ? random_point(tile, place, purpose) : Point2{0.0};
+    return lights_.sample(light, place.position, place.normal, point);
+  }
+
+  // What waits for its shadow ray.
+  void queue(const Place& place, const LightSample& lit, double factor) {
+    queued_rays_.push_back(make_ray(place.position, lit.direction, kShadowReach * lit.distance));
+    queued_.push_back({place.pixel, factor / kPi * place.weight * lit.irradiance});
+  }
+
+  void trace_queue() {
+    const TraceResult traced = tracer_.any(queued_rays_);
+    count(traced, queued_rays_.size(), result_.other_rays);
+    for (std::size_t i = 0; i < queued_.size(); ++i) {
+      if (traced.occluded[i] == 0) sums_[queued_[i].pixel] += queued_[i].radiance;
     }
+    queued_rays_.clear();
+    queued_.clear();
   }
 
   void count(const TraceResult& traced, std::size_t rays, std::uint64_t& counter) {
@@ -230,6 +293,8 @@ class Renderer {
   CameraView view_;
   double diagonal_ = 1.0;
   std::vector<Point> sums_;  // of the tile's pixels
+  std::vector<Ray> queued_rays_;
+  std::vector<Pending> queued_;
   RenderResult result_;
 };
 

@@ -8,9 +8,9 @@ namespace {
 
 const Point kHorizon{0.86, 0.93, 1.00};
 const Point kZenith{0.22, 0.42, 0.82};
-const Point kGround{0.20, 0.18, 0.15};
-const Point kBounced{0.50, 0.48, 0.45};
-constexpr double kHaze = 0.04;  // height over which ground turns into horizon
+const Point kGround{0.58, 0.60, 0.62};
+const Point kBounced{0.14, 0.13, 0.12};
+constexpr double kHaze = 0.25;  // height over which ground turns into horizon
 
 Point mix(const Point& a, const Point& b, double share) { return a + share * (b - a); }
 

@@ -8,14 +8,10 @@
 namespace gnomon {
 namespace {
 
-constexpr double kMiddleGrey = 0.20;
-constexpr double kWhite = 9.0;      // what is shown as full white, in units of middle grey / kMiddleGrey
+constexpr double kMiddleGrey = 0.16;
 constexpr double kDarkest = 1e-3;   // of the brightest: darker pixels count as this dark in the mean
 
-double filmic(double x) {
-  constexpr double a = 0.22, b = 0.30, c = 0.10, d = 0.20, e = 0.01, f = 0.30;
-  return (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f;
-}
+double filmic(double x) { return std::min(1.0, x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)); }
 
 double luminance_of(const Vec3& pixel) {
   const double value = luminance(to_point(pixel));
@@ -45,7 +41,7 @@ RgbImage tone_map(const Picture& picture, double exposure) {
   for (const Vec3& pixel : picture.pixels) {
     for (const float channel : pixel) {
       const double light = exposure * static_cast<double>(channel);
-      image.bytes.push_back(std::isfinite(light) ? to_srgb_byte(filmic(std::max(light, 0.0)) / filmic(kWhite)) : 0);
+      image.bytes.push_back(std::isfinite(light) ? to_srgb_byte(filmic(std::max(light, 0.0))) : 0);
     }
   }
   return image;

@@ -8,7 +8,7 @@ namespace gnomon {
 // The factor that brings the picture's logarithmic mean luminance to a middle grey; 1 for a black picture.
 [[nodiscard]] double auto_exposure(const Picture& picture);
 
-// Times exposure, through a filmic curve (Hable 2010: linear toe, soft shoulder) on each channel, to sRGB.
+// Times exposure, through a filmic curve (Narkowicz 2015, a fit to ACES) on each channel, to sRGB.
 // Values that are not finite come out black.
 [[nodiscard]] RgbImage tone_map(const Picture& picture, double exposure);
 

@@ -15,7 +15,8 @@ void draw_tile(MeshSketch& sketch, const Point& middle, double half_x, double ha
   const auto at = [&](double x, double z, double inset, double y) {
     return middle + Point{x * (half_x - inset), y, z * (half_z - inset)};
   };
-  constexpr std::array<std::array<double, 2>, 4> kCorners{{{-1.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}, {-1.0, -1.0}}};
+  constexpr std::array<std::array<double, 2>, 4> kCorners{
+      {{-1.0, 1.0}, {1.0, 1.0}, {1.0, -1.0}, {-1.0, -1.0}}};
   std::array<Point, 4> top;
   std::array<Point, 4> foot;
   for (unsigned i = 0; i < 4; ++i) {
@@ -26,7 +27,8 @@ void draw_tile(MeshSketch& sketch, const Point& middle, double half_x, double ha
   for (unsigned i = 0; i < 4; ++i) sketch.quad(foot[i], foot[(i + 1) % 4], top[(i + 1) % 4], top[i]);
 }
 
-// A profile drawn through a few (radius, height) knots, `steps` rings between each pair, eased so that it swells.
+// A profile drawn through a few (radius, height) knots, `steps` rings between each pair, eased so that it
+// swells.
 Profile swelling(std::initializer_list<glm::dvec2> knots, unsigned steps) {
   Profile profile;
   const glm::dvec2* const knot = knots.begin();
@@ -34,7 +36,8 @@ Profile swelling(std::initializer_list<glm::dvec2> knots, unsigned steps) {
     for (unsigned i = 0; i < steps; ++i) {
       const double t = static_cast<double>(i) / steps;
       const double eased = t * t * (3.0 - 2.0 * t);
-      profile.push_back({knot[k].x + eased * (knot[k + 1].x - knot[k].x), knot[k].y + t * (knot[k + 1].y - knot[k].y)});
+      profile.push_back(
+          {knot[k].x + eased * (knot[k + 1].x - knot[k].x), knot[k].y + t * (knot[k + 1].y - knot[k].y)});
     }
   }
   profile.push_back(knot[knots.size() - 1]);
@@ -58,7 +61,8 @@ void draw_blade(MeshSketch& sketch, const Frame& root, double length, double wid
   });
 }
 
-void draw_ring(MeshSketch& sketch, const Point& middle, double radius, double thick, unsigned around, unsigned sides) {
+void draw_ring(MeshSketch& sketch, const Point& middle, double radius, double thick, unsigned around,
+               unsigned sides) {
   sketch.sheet(
       sides, around,
       [&](unsigned i, unsigned j) {
@@ -71,7 +75,7 @@ void draw_ring(MeshSketch& sketch, const Point& middle, double radius, double th
 }
 
 struct Curtain {
-  Point middle;   // of the rod
+  Point middle;  // of the rod
   double width, drop, depth;
   double waves, phase, gather;
 };
@@ -100,7 +104,8 @@ void draw_tiles(Atrium& hall, std::uint64_t goal) {
   const double length = 2.0 * plan.half_length() + 1.8;
   const double width = 2.0 * plan.wall;
   sketch.use(hall.material.grout);
-  sketch.box(upright({0.0, 0.0, 0.0}), {-0.5 * length - 0.5, -0.5, -0.5 * width - 0.5}, {0.5 * length + 0.5, -0.012, 0.5 * width + 0.5});
+  sketch.box(upright({0.0, 0.0, 0.0}), {-0.5 * length - 0.5, -0.5, -0.5 * width - 0.5},
+             {0.5 * length + 0.5, -0.012, 0.5 * width + 0.5});
   const double tiles = share_of(sketch, goal, 1) / 10.0;
   const unsigned rows = at_least(4, std::sqrt(tiles * width / length));
   const unsigned columns = at_least(4, tiles / rows);
@@ -108,7 +113,8 @@ void draw_tiles(Atrium& hall, std::uint64_t goal) {
   const double half_z = 0.5 * width / rows;
   for (unsigned j = 0; j < rows; ++j) {
     for (unsigned i = 0; i < columns; ++i) {
-      const Point middle{half_x * (2.0 * i + 1.0) - 0.5 * length, -0.014, half_z * (2.0 * j + 1.0) - 0.5 * width};
+      const Point middle{half_x * (2.0 * i + 1.0) - 0.5 * length, -0.014,
+                         half_z * (2.0 * j + 1.0) - 0.5 * width};
       const bool path = std::abs(middle.z) < 1.0 || std::abs(std::abs(middle.z) - plan.arcade) < 0.7;
       sketch.use(path != ((i + j) % 2 == 0) ? hall.material.tile_light : hall.material.tile_dark);
       draw_tile(sketch, middle, half_x, half_z, 0.014 + 0.002 * hall.random.unit());
@@ -122,7 +128,8 @@ void draw_balustrades(Atrium& hall, std::uint64_t goal) {
   const double half = plan.half_length() - 0.15;
   const double rail = plan.gallery + 0.92;
   const double z = plan.arcade - 0.5 * plan.thickness - 0.08;
-  const auto total = static_cast<unsigned>(std::clamp(share_of(sketch, goal, 2) / 90.0, 2.0 * plan.bays, 16.0 * plan.bays));
+  const auto total =
+      static_cast<unsigned>(std::clamp(share_of(sketch, goal, 2) / 90.0, 2.0 * plan.bays, 16.0 * plan.bays));
   for (const double side : {-1.0, 1.0}) {
     sketch.use(hall.material.trim);
     sketch.box(upright({0.0, rail, side * z}), {-half, 0.0, -0.1}, {half, 0.09, 0.1});
@@ -131,7 +138,8 @@ void draw_balustrades(Atrium& hall, std::uint64_t goal) {
       const double left = share_of(sketch, goal, side < 0.0 ? 2 * total - i : total - i);
       const Frame foot = upright({half * (2.0 * (i + 0.5) / total - 1.0), plan.gallery + 0.05, side * z});
       sketch.use(hall.material.stone);
-      turn(sketch, foot, {{0.075, 0.0}, {0.05, 0.1}, {0.085, 0.32}, {0.035, 0.66}, {0.06, 0.76}, {0.06, 0.87}}, left);
+      turn(sketch, foot,
+           {{0.075, 0.0}, {0.05, 0.1}, {0.085, 0.32}, {0.035, 0.66}, {0.06, 0.76}, {0.06, 0.87}}, left);
     }
   }
 }
@@ -141,11 +149,30 @@ void draw_fountain(Atrium& hall, std::uint64_t goal) {
   const double budget = share_of(sketch, goal, 1);
   const Frame foot = upright({0.0, 0.0, 0.0});
   sketch.use(hall.material.trim);
-  turn(sketch, foot, {{1.75, 0.0}, {1.75, 0.12}, {1.55, 0.2}, {1.6, 0.55}, {1.7, 0.62}, {1.45, 0.66}, {1.4, 0.3}, {0.0, 0.28}},
+  turn(sketch, foot,
+       {{1.75, 0.0},
+        {1.75, 0.12},
+        {1.55, 0.2},
+        {1.6, 0.55},
+        {1.7, 0.62},
+        {1.45, 0.66},
+        {1.4, 0.3},
+        {0.0, 0.28}},
        0.35 * budget);
-  turn(sketch, foot, {{0.42, 0.3}, {0.3, 0.45}, {0.2, 0.7}, {0.28, 1.0}, {0.16, 1.3}, {0.9, 1.62}, {0.95, 1.7}, {0.8, 1.68}, {0.12, 1.48}},
+  turn(sketch, foot,
+       {{0.42, 0.3},
+        {0.3, 0.45},
+        {0.2, 0.7},
+        {0.28, 1.0},
+        {0.16, 1.3},
+        {0.9, 1.62},
+        {0.95, 1.7},
+        {0.8, 1.68},
+        {0.12, 1.48}},
        0.35 * budget);
-  turn(sketch, foot, {{0.1, 1.5}, {0.12, 1.9}, {0.4, 2.08}, {0.42, 2.13}, {0.1, 2.05}, {0.09, 2.25}, {0.0, 2.4}}, 0.2 * budget);
+  turn(sketch, foot,
+       {{0.1, 1.5}, {0.12, 1.9}, {0.4, 2.08}, {0.42, 2.13}, {0.1, 2.05}, {0.09, 2.25}, {0.0, 2.4}},
+       0.2 * budget);
   sketch.use(hall.material.water);
   const unsigned rings = at_least(2, std::sqrt(0.012 * budget));
   Profile ripples;
@@ -167,7 +194,16 @@ void draw_pots(Atrium& hall, std::uint64_t goal) {
     const double x = plan.bay * (static_cast<double>(i / 2) * 2.0 + 1.0) - plan.half_length();
     const Frame foot = upright({x, 0.0, side * (plan.arcade - 1.05)});
     sketch.use(hall.material.clay);
-    turn(sketch, foot, {{0.22, 0.0}, {0.3, 0.2}, {0.36, 0.45}, {0.28, 0.6}, {0.33, 0.68}, {0.27, 0.68}, {0.24, 0.58}, {0.0, 0.56}}, 0.4 * each);
+    turn(sketch, foot,
+         {{0.22, 0.0},
+          {0.3, 0.2},
+          {0.36, 0.45},
+          {0.28, 0.6},
+          {0.33, 0.68},
+          {0.27, 0.68},
+          {0.24, 0.58},
+          {0.0, 0.56}},
+         0.4 * each);
     const unsigned pieces = std::clamp(at_least(2, std::sqrt(each) / 16.0), 2U, 12U);
     const unsigned blades = at_least(5, 0.6 * each / (2.0 * pieces - 1.0));
     sketch.use(hall.material.leaf);
@@ -180,7 +216,8 @@ void draw_pots(Atrium& hall, std::uint64_t goal) {
   }
 }
 
-// Wheels of candles on long chains down the middle and a bowl in each aisle; their point lights are the caller's.
+// Wheels of candles on long chains down the middle and a bowl in each aisle; their point lights are the
+// caller's.
 void draw_lanterns(Atrium& hall, std::uint64_t goal) {
   const AtriumPlan& plan = hall.plan;
   MeshSketch& sketch = hall.sketch;
@@ -188,13 +225,15 @@ void draw_lanterns(Atrium& hall, std::uint64_t goal) {
   for (const double side : {-1.0, 1.0}) {
     const Point bowl = aisle_lamp_at(plan, side);
     sketch.use(hall.material.bronze);
-    turn(sketch, upright(bowl), {{0.0, 0.0}, {0.2, 0.06}, {0.3, 0.2}, {0.28, 0.22}, {0.0, 0.04}}, 0.08 * share_of(sketch, goal, 1));
+    turn(sketch, upright(bowl), {{0.0, 0.0}, {0.2, 0.06}, {0.3, 0.2}, {0.28, 0.22}, {0.0, 0.04}},
+         0.08 * share_of(sketch, goal, 1));
     sketch.use(hall.material.iron);
     sketch.bar(bowl + Point{0.0, 0.03, 0.0}, {bowl.x, plan.gallery - 0.34, bowl.z}, 0.012, 4);
   }
   for (unsigned i = 0; i < kLanterns; ++i) {
     const double each = share_of(sketch, goal, kLanterns - i);
-    const Point hub{0.55 * plan.half_length() * (static_cast<double>(i) - 1.0) + (i == 1 ? 0.0 : 0.4), 7.6, 0.0};
+    const Point hub{0.55 * plan.half_length() * (static_cast<double>(i) - 1.0) + (i == 1 ? 0.0 : 0.4), 7.6,
+                    0.0};
     const unsigned sides = std::clamp(at_least(4, std::sqrt(each) / 12.0), 4U, 24U);
     const unsigned around = at_least(10, 0.45 * each / (2.0 * sides));
     sketch.use(hall.material.iron);
@@ -206,7 +245,8 @@ void draw_lanterns(Atrium& hall, std::uint64_t goal) {
       sketch.use(hall.material.iron);
       if (k % 2 == 0) sketch.bar(rim, hub + Point{0.0, 1.62, 0.0}, 0.012, 4);
       sketch.use(hall.material.bronze);
-      turn(sketch, upright(rim), {{0.0, -0.08}, {0.07, 0.02}, {0.03, 0.04}, {0.03, 0.2}, {0.0, 0.24}}, 0.06 * each);
+      turn(sketch, upright(rim), {{0.0, -0.08}, {0.07, 0.02}, {0.03, 0.04}, {0.03, 0.2}, {0.0, 0.24}},
+           0.06 * each);
     }
   }
 }
@@ -226,7 +266,8 @@ void draw_curtains(Atrium& hall, std::uint64_t goal) {
     hall.sketch.use(hall.material.iron);
     hall.sketch.bar({x - (low ? 1.7 : 1.95), rod, z}, {x + (low ? 1.7 : 1.95), rod, z}, 0.03, 6);
     hall.sketch.use(hall.material.cloth[(bay + 2 * (i % 2)) % 4]);
-    Curtain cloth{{x, rod, z}, low ? 2.7 : 3.5, low ? 3.9 : 2.9, low ? 0.11 : 0.16, 7.0, hall.random.unit(), low ? 0.35 : 0.0};
+    Curtain cloth{{x, rod, z}, low ? 2.7 : 3.5,    low ? 3.9 : 2.9, low ? 0.11 : 0.16,
+                  7.0,         hall.random.unit(), low ? 0.35 : 0.0};
     draw_curtain(hall, cloth, each - 12.0);
   }
 }

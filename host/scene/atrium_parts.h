@@ -1,5 +1,5 @@
-// The atrium's plan and the parts it is drawn from: a nave between two arcades, aisles behind them, galleries over
-// the aisles, and a roof of thin beams that the sun falls through. Feeds generate_atrium.cpp only.
+// The atrium's plan and the parts it is drawn from: a nave between two arcades, aisles behind them, galleries
+// over the aisles, and a roof of thin beams that the sun falls through. Feeds generate_atrium.cpp only.
 #pragma once
 
 #include <array>

@@ -10,8 +10,8 @@ namespace {
 
 using Profile = std::vector<glm::dvec2>;
 
-// A classical column of unit radius: moulded base, shaft that narrows with a slight belly, moulded capital. `steps`
-// rings on the shaft; below three rings only the outline is kept.
+// A classical column of unit radius: moulded base, shaft that narrows with a slight belly, moulded capital.
+// `steps` rings on the shaft; below three rings only the outline is kept.
 Profile column_profile(double height, double radius, unsigned steps) {
   Profile profile;
   const auto ring = [&](double r, double y) { profile.push_back({r * radius, y}); };
@@ -38,7 +38,8 @@ Profile column_profile(double height, double radius, unsigned steps) {
 }
 
 // Turns the profile; with sides to spare the shaft gets flutes.
-void turn_column(MeshSketch& sketch, const Frame& frame, const Profile& profile, double radius, unsigned sides) {
+void turn_column(MeshSketch& sketch, const Frame& frame, const Profile& profile, double radius,
+                 unsigned sides) {
   constexpr unsigned kFlutes = 18;
   if (sides < 4 * kFlutes) return sketch.lathe(frame, profile, sides);
   sides -= sides % kFlutes;
@@ -79,18 +80,20 @@ void draw_column_row(Atrium& hall, const ColumnRow& row, double triangles) {
 }
 
 struct Arch {
-  double x, z;            // middle of the opening, axis of the wall
-  double radius, half;    // of the opening; of the wall piece that holds it
-  double spring, top;     // where the arch begins and the wall piece ends
+  double x, z;          // middle of the opening, axis of the wall
+  double radius, half;  // of the opening; of the wall piece that holds it
+  double spring, top;   // where the arch begins and the wall piece ends
 };
 
-// The wall piece over an opening: both faces from the arch up, the soffit under it, and a moulding on each face.
+// The wall piece over an opening: both faces from the arch up, the soffit under it, and a moulding on each
+// face.
 void draw_arch(Atrium& hall, const Arch& arch, unsigned steps) {
   MeshSketch& sketch = hall.sketch;
   const double deep = 0.5 * hall.plan.thickness;
   const auto inner = [&](unsigned i, double z) {
     const double turns = 0.5 * i / steps;
-    return Point{arch.x - arch.radius * cos_turns(turns), arch.spring + arch.radius * sin_turns(turns), arch.z + z};
+    return Point{arch.x - arch.radius * cos_turns(turns), arch.spring + arch.radius * sin_turns(turns),
+                 arch.z + z};
   };
   const auto outer = [&](unsigned i, double z) {
     return Point{arch.x - arch.half * cos_turns(0.5 * i / steps), arch.top, arch.z + z};
@@ -98,7 +101,8 @@ void draw_arch(Atrium& hall, const Arch& arch, unsigned steps) {
   sketch.use(hall.material.stone);
   sketch.sheet(steps, 1, [&](unsigned i, unsigned j) { return j == 0 ? inner(i, deep) : outer(i, deep); });
   sketch.sheet(steps, 1, [&](unsigned i, unsigned j) { return j == 0 ? outer(i, -deep) : inner(i, -deep); });
-  sketch.sheet(steps, 2, [&](unsigned i, unsigned j) { return inner(i, deep * (static_cast<double>(j) - 1.0)); });
+  sketch.sheet(steps, 2,
+               [&](unsigned i, unsigned j) { return inner(i, deep * (static_cast<double>(j) - 1.0)); });
   for (const double side : {-1.0, 1.0}) {
     const Point low{arch.x + side * arch.half, arch.spring, arch.z};
     const Point near = inner(side < 0.0 ? 0 : steps, 0.0);
@@ -172,7 +176,8 @@ void draw_end_wall(Atrium& hall, double side) {
   sketch.use(hall.material.stone);
   for (const double edge : {-1.0, 1.0}) {
     sketch.box(frame.moved(edge * 3.3, 0.0, 0.0), {-1.1, 0.0, -0.05}, {1.1, plan.eaves, 0.55});
-    sketch.box(frame.moved(edge * 7.2, 0.0, 0.0), {-2.2, plan.gallery - 0.5, -0.05}, {2.2, plan.gallery, 0.4});
+    sketch.box(frame.moved(edge * 7.2, 0.0, 0.0), {-2.2, plan.gallery - 0.5, -0.05},
+               {2.2, plan.gallery, 0.4});
   }
   sketch.box(frame, {-2.3, plan.gallery + 1.6, -0.05}, {2.3, plan.eaves, 0.55});
   sketch.use(hall.material.trim);
@@ -210,8 +215,9 @@ void draw_columns(Atrium& hall, std::uint64_t goal) {
   for (const double side : {-1.0, 1.0}) {
     const double z = side * plan.arcade;
     draw_column_row(hall, {0.0, plan.spring, 0.42, z, plan.bay, plan.bays + 1}, 0.5 * budget);
-    draw_column_row(hall, {plan.gallery, plan.upper_spring - plan.gallery, 0.2, z, 0.5 * plan.bay, 2 * plan.bays + 1},
-                    0.5 * budget);
+    draw_column_row(
+        hall, {plan.gallery, plan.upper_spring - plan.gallery, 0.2, z, 0.5 * plan.bay, 2 * plan.bays + 1},
+        0.5 * budget);
   }
 }
 
@@ -220,10 +226,10 @@ void draw_arches(Atrium& hall, std::uint64_t goal) {
   const double budget = share_of(hall.sketch, goal, 4);
   for (const double side : {-1.0, 1.0}) {
     const double z = side * plan.arcade;
-    draw_arch_row(hall, {0.0, z, 0.5 * plan.bay - 0.6, 0.5 * plan.bay, plan.spring, plan.gallery - 0.2}, plan.bays,
-                  budget);
-    draw_arch_row(hall, {0.0, z, 0.25 * plan.bay - 0.28, 0.25 * plan.bay, plan.upper_spring, plan.eaves}, 2 * plan.bays,
-                  budget);
+    draw_arch_row(hall, {0.0, z, 0.5 * plan.bay - 0.6, 0.5 * plan.bay, plan.spring, plan.gallery - 0.2},
+                  plan.bays, budget);
+    draw_arch_row(hall, {0.0, z, 0.25 * plan.bay - 0.28, 0.25 * plan.bay, plan.upper_spring, plan.eaves},
+                  2 * plan.bays, budget);
   }
 }
 
@@ -235,7 +241,8 @@ void draw_shell(Atrium& hall) {
   }
 }
 
-// Beams across, purlins along, thin braces on the diagonal, and a skin of boards that leaves every other bay open.
+// Beams across, purlins along, thin braces on the diagonal, and a skin of boards that leaves every other bay
+// open.
 void draw_roof(Atrium& hall, std::uint64_t goal) {
   const AtriumPlan& plan = hall.plan;
   MeshSketch& sketch = hall.sketch;
@@ -252,7 +259,8 @@ void draw_roof(Atrium& hall, std::uint64_t goal) {
     const double x = -half + half * i / (0.5 * boards) + (i % 4 == 0 ? 0.0 : 0.3);
     sketch.box(frame, {x, y + 0.46, -span}, {x + half / boards * 1.1, y + 0.52, span});
   }
-  const unsigned beams = at_least(2 * plan.bays, share_of(sketch, goal, 1) / 36.0);
+  // More than six to a bay would shut the sun out.
+  const unsigned beams = std::min(at_least(2 * plan.bays, share_of(sketch, goal, 1) / 36.0), 6 * plan.bays);
   const double step = 2.0 * half / beams;
   for (unsigned i = 0; i < beams; ++i) {
     const double x = -half + step * (i + 0.5);

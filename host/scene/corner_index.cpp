@@ -45,7 +45,8 @@ class CornerTable {
 
   void grow() {
     slots_.assign(2 * slots_.size(), kFree);
-    for (std::size_t i = 0; i < positions_.size(); ++i) slots_[find(positions_[i])] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+      slots_[find(positions_[i])] = static_cast<std::uint32_t>(i);
   }
 
   std::vector<Vec3>& positions_;

@@ -1,4 +1,5 @@
-// Corners of a triangle soup, each kept once. Not for welding: only bitwise equal corners are one. Feeds gltf_export.
+// Corners of a triangle soup, each kept once. Not for welding: only bitwise equal corners are one. Feeds
+// gltf_export.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,9 @@ struct CornerIndex {
   std::vector<std::uint32_t> indices;  // three per triangle
 };
 
-// Indexes the triangles named by `members`, in that order. -0 and 0 stay apart: the bits are what is compared.
-[[nodiscard]] CornerIndex index_corners(std::span<const Triangle> triangles, std::span<const std::uint32_t> members);
+// Indexes the triangles named by `members`, in that order. -0 and 0 stay apart: the bits are what is
+// compared.
+[[nodiscard]] CornerIndex index_corners(std::span<const Triangle> triangles,
+                                        std::span<const std::uint32_t> members);
 
 }  // namespace gnomon

@@ -42,7 +42,8 @@ void draw_table(Cottage& cottage, const Frame& foot, unsigned sides) {
   }
   sketch.box(foot, {-0.95, 0.72, -0.52}, {0.95, 0.77, 0.52});
   sketch.use(cottage.material.pottery);
-  const Profile bowl{{0.0, 0.0}, {0.08, 0.0}, {0.17, 0.07}, {0.2, 0.13}, {0.18, 0.13}, {0.15, 0.08}, {0.0, 0.03}};
+  const Profile bowl{{0.0, 0.0},   {0.08, 0.0},  {0.17, 0.07}, {0.2, 0.13},
+                     {0.18, 0.13}, {0.15, 0.08}, {0.0, 0.03}};
   sketch.lathe(foot.moved(0.0, 0.77, 0.0), bowl, 2 * sides);
   for (unsigned k = 0; k < 5; ++k) {
     sketch.use(cottage.material.flowers[k % 4].petal);
@@ -65,7 +66,8 @@ void draw_shelves(Cottage& cottage, const Frame& foot, unsigned books_per_board)
       const double height = cottage.random.between(0.24, 0.37);
       const double depth = cottage.random.between(0.16, 0.25);
       sketch.use(cottage.material.books[cottage.random.below(4)]);
-      sketch.box(foot.moved(-0.75 + width * k, y + 0.03, 0.02), {0.02 * width, 0.0, 0.0}, {0.92 * width, height, depth});
+      sketch.box(foot.moved(-0.75 + width * k, y + 0.03, 0.02), {0.02 * width, 0.0, 0.0},
+                 {0.92 * width, height, depth});
     }
   }
 }
@@ -110,7 +112,8 @@ void draw_picket(MeshSketch& sketch, const Frame& foot, double height) {
 
 void draw_furniture(Cottage& cottage, std::uint64_t goal) {
   const double budget = share_of(cottage.sketch, goal, 1);
-  // 36 spindles and as many rings as sides on each take about 72 sides^2 triangles; they get half of the budget.
+  // 36 spindles and as many rings as sides on each take about 72 sides^2 triangles; they get half of the
+  // budget.
   const unsigned sides = at_least(4, std::sqrt(0.5 * budget / 72.0));
   const double inside = 0.04;
   draw_table(cottage, upright({-1.2, inside, 0.0}), sides);
@@ -144,7 +147,8 @@ void draw_fence(Cottage& cottage, std::uint64_t goal) {
     for (const double y : {0.35, 0.85}) sketch.box(frame, {0.0, y, -0.06}, {length, y + 0.07, -0.02});
     const unsigned pickets = at_least(2, length / pitch);
     for (unsigned i = 0; i < pickets; ++i) {
-      draw_picket(sketch, frame.moved(length * (i + 0.5) / pickets, 0.0, 0.0), cottage.random.between(0.98, 1.06));
+      draw_picket(sketch, frame.moved(length * (i + 0.5) / pickets, 0.0, 0.0),
+                  cottage.random.between(0.98, 1.06));
     }
   }
 }

@@ -59,11 +59,12 @@ void draw_door(Cottage& cottage, const Frame& frame, const Opening& o) {
   sketch.use(cottage.material.timber);
   sketch.box(frame, {o.left - 0.35, o.head + 0.25, -0.05}, {o.right + 0.35, o.head + 0.33, 0.9});
   sketch.bar(frame.at(o.left - 0.3, o.head - 0.4, 0.0), frame.at(o.left - 0.3, o.head + 0.26, 0.8), 0.035, 5);
-  sketch.bar(frame.at(o.right + 0.3, o.head - 0.4, 0.0), frame.at(o.right + 0.3, o.head + 0.26, 0.8), 0.035, 5);
+  sketch.bar(frame.at(o.right + 0.3, o.head - 0.4, 0.0), frame.at(o.right + 0.3, o.head + 0.26, 0.8), 0.035,
+             5);
   sketch.use(sketch.material("porch light", {0.2F, 0.2F, 0.2F}, 1.0F, {18.0F, 12.0F, 6.0F}));
   const double y = o.head + 0.24;
-  sketch.quad(frame.at(o.left + 0.3, y, 0.3), frame.at(o.right - 0.3, y, 0.3), frame.at(o.right - 0.3, y, 0.55),
-              frame.at(o.left + 0.3, y, 0.55));
+  sketch.quad(frame.at(o.left + 0.3, y, 0.3), frame.at(o.right - 0.3, y, 0.3),
+              frame.at(o.right - 0.3, y, 0.55), frame.at(o.left + 0.3, y, 0.55));
 }
 
 // Two slabs that lean against each other and the gables under them.
@@ -75,7 +76,8 @@ void draw_roof(Cottage& cottage) {
     const Point slope = glm::normalize(Point{0.0, -rise, cottage.half_z});
     const Frame frame{{0.0, cottage.ridge, 0.0}, {1.0, 0.0, 0.0}, {0.0, -slope.y, 0.0}, slope};
     Frame slab{frame.origin, frame.x, glm::cross(slope, frame.x), slope};
-    if (side < 0.0) slab = {slab.origin, -slab.x, {slab.y.x, slab.y.y, -slab.y.z}, {slope.x, slope.y, -slope.z}};
+    if (side < 0.0)
+      slab = {slab.origin, -slab.x, {slab.y.x, slab.y.y, -slab.y.z}, {slope.x, slope.y, -slope.z}};
     const double length = glm::length(Point{0.0, rise, cottage.half_z}) + 0.7;
     sketch.use(cottage.material.roof);
     sketch.box(slab, {-cottage.half_x - over, 0.0, -0.02}, {cottage.half_x + over, 0.16, length});
@@ -92,7 +94,8 @@ void draw_roof(Cottage& cottage) {
   }
   sketch.use(cottage.material.brick);
   sketch.box(upright({2.2, 0.0, -1.1}), {-0.35, cottage.eaves, -0.35}, {0.35, cottage.ridge + 0.7, 0.35});
-  sketch.box(upright({2.2, 0.0, -1.1}), {-0.42, cottage.ridge + 0.7, -0.42}, {0.42, cottage.ridge + 0.85, 0.42});
+  sketch.box(upright({2.2, 0.0, -1.1}), {-0.42, cottage.ridge + 0.7, -0.42},
+             {0.42, cottage.ridge + 0.85, 0.42});
 }
 
 }  // namespace
@@ -120,7 +123,8 @@ void draw_house(Cottage& cottage) {
   cottage.sketch.box(upright({0.0, 0.0, 0.0}), {-x + 0.05, -0.2, -z + 0.05}, {x - 0.05, 0.04, z - 0.05});
   cottage.sketch.use(cottage.material.timber);
   for (int k = -1; k <= 1; ++k) {
-    cottage.sketch.box(upright({2.9 * k, cottage.eaves, 0.0}), {-0.1, -0.22, -z + 0.1}, {0.1, -0.02, z - 0.1});
+    cottage.sketch.box(upright({2.9 * k, cottage.eaves, 0.0}), {-0.1, -0.22, -z + 0.1},
+                       {0.1, -0.02, z - 0.1});
   }
 }
 
@@ -132,7 +136,8 @@ void draw_ground(Cottage& cottage) {
   for (unsigned i = 0; i < 9; ++i) {  // stepping stones from the door to the gate
     const double z = cottage.half_z + 1.2 + 0.85 * i;
     const double x = -0.15 + 0.12 * cottage.random.between(-1.0, 1.0);
-    sketch.box(upright({x, 0.0, z}, cottage.random.between(-0.03, 0.03)), {-0.5, -0.1, -0.33}, {0.5, 0.025, 0.33});
+    sketch.box(upright({x, 0.0, z}, cottage.random.between(-0.03, 0.03)), {-0.5, -0.1, -0.33},
+               {0.5, 0.025, 0.33});
   }
 }
 

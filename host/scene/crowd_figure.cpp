@@ -137,12 +137,18 @@ void draw_figure(MeshSketch& sketch, SteadyRandom& random, const Frame& foot, do
   draw_leg(figure, -1.0, -stance.stride, outfit);
   sketch.use(outfit.legs);
   if (outfit.skirt) {
-    figure.trunk({{0.0, 0.0, 0.27}, {0.135, 0.12, 0.27}, {0.1, 0.085, 0.5}, {0.075, 0.06, 0.62}, {0.0, 0.0, 0.62}});
+    figure.trunk(
+        {{0.0, 0.0, 0.27}, {0.135, 0.12, 0.27}, {0.1, 0.085, 0.5}, {0.075, 0.06, 0.62}, {0.0, 0.0, 0.62}});
   } else {
     figure.trunk({{0.0, 0.0, 0.45}, {0.09, 0.065, 0.5}, {0.085, 0.06, 0.58}, {0.0, 0.0, 0.6}});
   }
   sketch.use(outfit.top);
-  figure.trunk({{0.0, 0.0, 0.56}, {0.086, 0.062, 0.57}, {0.078, 0.056, 0.64}, {0.108, 0.066, 0.76}, {0.1, 0.056, 0.81}, {0.0, 0.0, 0.845}});
+  figure.trunk({{0.0, 0.0, 0.56},
+                {0.086, 0.062, 0.57},
+                {0.078, 0.056, 0.64},
+                {0.108, 0.066, 0.76},
+                {0.1, 0.056, 0.81},
+                {0.0, 0.0, 0.845}});
   draw_arm(figure, stance.right, 1.0, outfit);
   draw_arm(figure, stance.left, -1.0, outfit);
   draw_head(figure, outfit);

@@ -12,7 +12,8 @@ struct Outfit {
 
 enum class Pose { kStanding, kWalking, kCheering, kWaving, kClapping, kHandsOnHips, kCount };
 
-// A figure on the frame's origin that looks along its z, `height` metres tall, of about `triangles` triangles.
+// A figure on the frame's origin that looks along its z, `height` metres tall, of about `triangles`
+// triangles.
 void draw_figure(MeshSketch& sketch, SteadyRandom& random, const Frame& foot, double height, Pose pose,
                  const Outfit& outfit, double triangles);
 

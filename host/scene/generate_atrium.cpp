@@ -22,15 +22,18 @@ AtriumMaterials add_materials(MeshSketch& sketch) {
   m.clay = sketch.material("clay", {0.60F, 0.30F, 0.19F}, 0.9F);
   m.water = sketch.material("water", {0.20F, 0.38F, 0.42F}, 0.1F);
   m.panel = sketch.material("light panel", {0.2F, 0.2F, 0.2F}, 1.0F, {16.0F, 12.5F, 8.0F});
-  m.cloth = {sketch.material("red cloth", {0.58F, 0.06F, 0.05F}), sketch.material("blue cloth", {0.08F, 0.16F, 0.42F}),
-             sketch.material("green cloth", {0.10F, 0.32F, 0.14F}), sketch.material("gold cloth", {0.76F, 0.52F, 0.13F})};
+  m.cloth = {sketch.material("red cloth", {0.58F, 0.06F, 0.05F}),
+             sketch.material("blue cloth", {0.08F, 0.16F, 0.42F}),
+             sketch.material("green cloth", {0.10F, 0.32F, 0.14F}),
+             sketch.material("gold cloth", {0.76F, 0.52F, 0.13F})};
   m.painting = {sketch.material("sea picture", {0.16F, 0.32F, 0.44F}, 0.5F),
                 sketch.material("meadow picture", {0.36F, 0.42F, 0.17F}, 0.5F),
                 sketch.material("dusk picture", {0.55F, 0.27F, 0.20F}, 0.5F)};
   return m;
 }
 
-// The sun comes in steeply over the right-hand eaves; lanterns, a spot on the far arch and a panel fill the shade.
+// The sun comes in steeply over the right-hand eaves; lanterns, a spot on the far arch and a panel fill the
+// shade.
 void add_lights(Atrium& hall) {
   const AtriumPlan& plan = hall.plan;
   hall.sketch.sun({0.28, -1.0, -0.42}, {26.0F, 23.5F, 19.0F});
@@ -39,7 +42,8 @@ void add_lights(Atrium& hall) {
     hall.sketch.point_light("lantern", {x, 7.25, 0.0}, {45.0F, 32.0F, 17.0F});
   }
   for (const double side : {-1.0, 1.0}) {
-    hall.sketch.point_light("aisle lamp", aisle_lamp_at(plan, side) - Point{0.0, 0.25, 0.0}, {16.0F, 11.0F, 6.0F});
+    hall.sketch.point_light("aisle lamp", aisle_lamp_at(plan, side) - Point{0.0, 0.25, 0.0},
+                            {16.0F, 11.0F, 6.0F});
   }
   hall.sketch.spot_light("spot", {plan.half_length() - 7.0, 9.8, 0.0}, {plan.half_length() + 0.9, 4.2, 0.0},
                          {130.0F, 108.0F, 76.0F}, 0.5);
@@ -51,10 +55,11 @@ void add_lights(Atrium& hall) {
 
 void add_cameras(Atrium& hall) {
   const double end = hall.plan.half_length();
-  hall.sketch.camera("nave", {-end + 1.2, 2.6, -1.9}, {0.35 * end, 4.6, 0.8}, 1.0);
+  const Point eye{-end + 1.2, 2.6, -1.9};
+  hall.sketch.camera("nave", eye, eye + Point{20.0, 2.0, 2.7}, 1.0);
   // Over the balustrade of the second bay, which has no curtain on this side.
-  hall.sketch.camera("gallery", {-end + 1.5 * hall.plan.bay, 8.1, 6.6}, {0.3 * end, 3.4, -4.0}, 1.0);
-  hall.sketch.camera("aisle", {-0.8 * end, 1.7, 7.4}, {0.6 * end, 2.2, 6.6}, 0.95);
+  hall.sketch.camera("gallery", {-end + 1.75 * hall.plan.bay, 8.2, 5.75}, {0.05 * end, 3.6, -4.0}, 1.0);
+  hall.sketch.camera("aisle", {-0.66 * end, 1.7, 7.5}, {0.6 * end, 2.2, 6.7}, 0.95);
 }
 
 }  // namespace

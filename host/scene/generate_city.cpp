@@ -1,5 +1,5 @@
-// Towers with ledges and windows on rolling ground, and long thin cables slung between them: the boxes of slanted
-// cables are mostly empty, which is what hurts a hierarchy.
+// Towers with ledges and windows on rolling ground, and long thin cables slung between them: the boxes of
+// slanted cables are mostly empty, which is what hurts a hierarchy.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@ constexpr double kBlock = 46.0;   // a block with its street
 constexpr double kStreet = 16.0;  // the street's part of it
 
 struct Tower {
-  Point foot;            // centre, on the ground
+  Point foot;  // centre, on the ground
   double half_x, half_z, height;
   double turn;
 };
@@ -37,8 +37,10 @@ void add_materials(City& city) {
   city.road = sketch.material("road", {0.16F, 0.16F, 0.17F});
   city.glass = sketch.material("glass", {0.16F, 0.24F, 0.31F}, 0.15F);
   city.steel = sketch.material("steel", {0.30F, 0.30F, 0.32F}, 0.4F);
-  city.walls = {sketch.material("limestone", {0.72F, 0.67F, 0.57F}), sketch.material("brick", {0.47F, 0.24F, 0.18F}),
-                sketch.material("concrete", {0.52F, 0.52F, 0.51F}), sketch.material("sandstone", {0.70F, 0.53F, 0.38F})};
+  city.walls = {sketch.material("limestone", {0.72F, 0.67F, 0.57F}),
+                sketch.material("brick", {0.47F, 0.24F, 0.18F}),
+                sketch.material("concrete", {0.52F, 0.52F, 0.51F}),
+                sketch.material("sandstone", {0.70F, 0.53F, 0.38F})};
   city.lamp = sketch.material("billboard", {0.1F, 0.1F, 0.1F}, 1.0F, {14.0F, 9.0F, 5.0F});
 }
 
@@ -70,7 +72,8 @@ void place_towers(City& city) {
       const double x = kBlock * (column + 0.5) - city.half();
       const double z = kBlock * (row + 0.5) - city.half();
       const double room = 0.5 * (kBlock - kStreet);
-      const double centre = 1.0 - std::sqrt(x * x + z * z) / (1.5 * city.half());  // taller towards the middle
+      const double centre =
+          1.0 - std::sqrt(x * x + z * z) / (1.5 * city.half());  // taller towards the middle
       const double half_x = room * city.random.between(0.55, 0.95);
       const double half_z = room * city.random.between(0.55, 0.95);
       const double luck = city.random.unit();  // squared: many low roofs, few that stand out
@@ -81,9 +84,10 @@ void place_towers(City& city) {
   }
 }
 
-// One facade: a grid of windows, each a pane set before the wall over a sill. The frame's x runs along the facade, y
-// up, z outwards.
-void draw_facade(City& city, const Frame& frame, double width, double height, double windows, MaterialId wall) {
+// One facade: a grid of windows, each a pane set before the wall over a sill. The frame's x runs along the
+// facade, y up, z outwards.
+void draw_facade(City& city, const Frame& frame, double width, double height, double windows,
+                 MaterialId wall) {
   const unsigned storeys = at_least(1, std::sqrt(windows * height / (1.2 * width)));
   const unsigned bays = at_least(1, windows / storeys);
   const double dx = width / bays;
@@ -104,7 +108,8 @@ void draw_tier(City& city, const Frame& base, double half_x, double half_z, doub
                MaterialId wall) {
   city.sketch.use(wall);
   city.sketch.box(base, {-half_x, 0.0, -half_z}, {half_x, height, half_z});
-  city.sketch.box(base, {-half_x - 0.5, height - 0.9, -half_z - 0.5}, {half_x + 0.5, height + 0.4, half_z + 0.5});
+  city.sketch.box(base, {-half_x - 0.5, height - 0.9, -half_z - 0.5},
+                  {half_x + 0.5, height + 0.4, half_z + 0.5});
   if (windows < 4.0) return;
   const double around = 4.0 * (half_x + half_z);
   for (unsigned side = 0; side < 4; ++side) {
@@ -122,7 +127,8 @@ void draw_tier(City& city, const Frame& base, double half_x, double half_z, doub
 void draw_tower(City& city, const Tower& tower, double triangles) {
   const MaterialId wall = city.walls[city.random.below(4)];
   const unsigned tiers = tower.height > 70.0 ? 3 : (tower.height > 42.0 ? 2 : 1);
-  constexpr std::array<std::array<double, 3>, 3> kShare{{{1.0, 0.0, 0.0}, {0.65, 0.35, 0.0}, {0.5, 0.3, 0.2}}};
+  constexpr std::array<std::array<double, 3>, 3> kShare{
+      {{1.0, 0.0, 0.0}, {0.65, 0.35, 0.0}, {0.5, 0.3, 0.2}}};
   const Frame ground = upright(tower.foot, tower.turn);
   city.sketch.use(wall);
   city.sketch.box(ground, {-tower.half_x - 1.0, -6.0, -tower.half_z - 1.0},
@@ -132,8 +138,8 @@ void draw_tower(City& city, const Tower& tower, double triangles) {
   for (unsigned tier = 0; tier < tiers; ++tier) {
     const double inset = 1.0 - 0.22 * tier;
     const double part = kShare[tiers - 1][tier];
-    draw_tier(city, ground.moved(0.0, y, 0.0), inset * tower.half_x, inset * tower.half_z, part * tower.height,
-              part * windows, wall);
+    draw_tier(city, ground.moved(0.0, y, 0.0), inset * tower.half_x, inset * tower.half_z,
+              part * tower.height, part * windows, wall);
     y += part * tower.height;
   }
   if (tiers < 3) return;
@@ -171,7 +177,8 @@ void draw_cables(City& city, std::uint64_t goal) {
     const Point from = anchor_on(city, first);
     Point to = anchor_on(city, second);
     if (i % 6 == 0 || glm::length(to - from) < 30.0) {
-      to = {from.x > 0.0 ? -1.3 * city.half() : 1.3 * city.half(), 0.0, from.z > 0.0 ? -1.3 * city.half() : 1.3 * city.half()};
+      to = {from.x > 0.0 ? -1.3 * city.half() : 1.3 * city.half(), 0.0,
+            from.z > 0.0 ? -1.3 * city.half() : 1.3 * city.half()};
       to.y = ground_at(city, to.x, to.z);
     }
     draw_cable(city, from, to, 0.03 * glm::length(to - from), pieces, city.random.between(0.04, 0.12));
@@ -184,20 +191,22 @@ void add_lights(City& city) {
   const double avenue = city.blocks % 2 == 0 ? 0.0 : 0.5 * kBlock;
   for (int i = -1; i <= 1; ++i) {
     const double z = avenue + i * kBlock;
-    city.sketch.point_light("crossing", {avenue, ground_at(city, avenue, z) + 9.0, z}, {420.0F, 330.0F, 220.0F});
+    city.sketch.point_light("crossing", {avenue, ground_at(city, avenue, z) + 9.0, z},
+                            {420.0F, 330.0F, 220.0F});
   }
   const double far = -1.05 * city.half();
   const Point foot{avenue, ground_at(city, avenue, far) + 14.0, far};
   city.sketch.use(city.lamp);
   city.sketch.quad(foot + Point{-7.0, 0.0, 0.0}, foot + Point{7.0, 0.0, 0.0}, foot + Point{7.0, 8.0, 0.0},
                    foot + Point{-7.0, 8.0, 0.0});
-  city.sketch.spot_light("searchlight", foot + Point{0.0, 12.0, 3.0}, {avenue, 5.0, 0.0}, {9000.0F, 9000.0F, 9500.0F},
-                         0.35);
+  city.sketch.spot_light("searchlight", foot + Point{0.0, 12.0, 3.0}, {avenue, 5.0, 0.0},
+                         {9000.0F, 9000.0F, 9500.0F}, 0.35);
 }
 
 void add_cameras(City& city) {
   const double half = city.half();
-  city.sketch.camera("overlook", {0.95 * half, 0.42 * half + 40.0, 1.25 * half}, {-0.05 * half, 18.0, -0.05 * half}, 0.75);
+  city.sketch.camera("overlook", {0.95 * half, 0.42 * half + 40.0, 1.25 * half},
+                     {-0.05 * half, 18.0, -0.05 * half}, 0.75);
   const double avenue = city.blocks % 2 == 0 ? 0.0 : 0.5 * kBlock;
   const Point eye{avenue, ground_at(city, avenue, 0.95 * half) + 6.0, 0.95 * half};
   city.sketch.camera("avenue", eye, {avenue, 26.0, -half}, 0.95);
@@ -207,7 +216,8 @@ void add_cameras(City& city) {
 
 Scene make_city(std::uint64_t triangles, std::uint64_t seed) {
   const double n = static_cast<double>(triangles);
-  City city{MeshSketch("city", triangles), ValueNoise(seed), SteadyRandom(seed), at_least(4, std::sqrt(std::sqrt(n)) / 2.2)};
+  City city{MeshSketch("city", triangles), ValueNoise(seed), SteadyRandom(seed),
+            at_least(4, std::sqrt(std::sqrt(n)) / 2.2)};
   add_materials(city);
   place_towers(city);
   add_lights(city);

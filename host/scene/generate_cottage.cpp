@@ -24,15 +24,18 @@ CottageMaterials add_materials(MeshSketch& sketch) {
   m.stone = sketch.material("stone", {0.58F, 0.56F, 0.52F});
   m.grass = sketch.material("grass", {0.29F, 0.46F, 0.13F});
   m.shade = sketch.material("lampshade", {0.85F, 0.72F, 0.50F});
-  m.books = {sketch.material("book red", {0.48F, 0.10F, 0.09F}), sketch.material("book green", {0.13F, 0.28F, 0.16F}),
-             sketch.material("book blue", {0.13F, 0.18F, 0.36F}), sketch.material("book tan", {0.62F, 0.48F, 0.29F})};
+  m.books = {sketch.material("book red", {0.48F, 0.10F, 0.09F}),
+             sketch.material("book green", {0.13F, 0.28F, 0.16F}),
+             sketch.material("book blue", {0.13F, 0.18F, 0.36F}),
+             sketch.material("book tan", {0.62F, 0.48F, 0.29F})};
   const MaterialId stem = sketch.material("stem", {0.18F, 0.40F, 0.12F});
   const MaterialId eye = sketch.material("flower eye", {0.85F, 0.62F, 0.10F});
   m.flowers = {FlowerKind{stem, sketch.material("poppy", {0.80F, 0.12F, 0.08F}), eye},
                FlowerKind{stem, sketch.material("daisy", {0.92F, 0.91F, 0.88F}), eye},
                FlowerKind{stem, sketch.material("cornflower", {0.20F, 0.27F, 0.75F}), eye},
                FlowerKind{stem, sketch.material("marigold", {0.92F, 0.50F, 0.06F}), eye}};
-  m.apple = {false, sketch.material("bark", {0.29F, 0.21F, 0.15F}), sketch.material("apple leaf", {0.20F, 0.42F, 0.10F})};
+  m.apple = {false, sketch.material("bark", {0.29F, 0.21F, 0.15F}),
+             sketch.material("apple leaf", {0.20F, 0.42F, 0.10F})};
   m.birch = {false, sketch.material("birch bark", {0.75F, 0.72F, 0.66F}),
              sketch.material("birch leaf", {0.44F, 0.55F, 0.14F})};
   return m;
@@ -120,7 +123,9 @@ Scene make(const char* name, std::uint64_t triangles, std::uint64_t seed, bool w
 
 }  // namespace
 
-Scene make_cottage(std::uint64_t triangles, std::uint64_t seed) { return make("cottage", triangles, seed, false); }
+Scene make_cottage(std::uint64_t triangles, std::uint64_t seed) {
+  return make("cottage", triangles, seed, false);
+}
 Scene make_cottage_walls(std::uint64_t triangles, std::uint64_t seed) {
   return make("cottage-walls", triangles, seed, true);
 }

@@ -1,4 +1,5 @@
-// People before a stage in a walled hall: many detailed objects of like size, lit from above and from the stage.
+// People before a stage in a walled hall: many detailed objects of like size, lit from above and from the
+// stage.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,11 +28,14 @@ constexpr double kStageDepth = 6.0;
 
 void add_materials(Crowd& crowd) {
   MeshSketch& s = crowd.sketch;
-  crowd.skin = {s.material("skin 1", {0.80F, 0.58F, 0.46F}, 0.6F), s.material("skin 2", {0.62F, 0.41F, 0.29F}, 0.6F),
-                s.material("skin 3", {0.40F, 0.25F, 0.17F}, 0.6F), s.material("skin 4", {0.86F, 0.67F, 0.56F}, 0.6F),
-                s.material("skin 5", {0.26F, 0.16F, 0.11F}, 0.6F)};
-  crowd.hair = {s.material("hair black", {0.03F, 0.03F, 0.03F}, 0.5F), s.material("hair brown", {0.16F, 0.09F, 0.05F}, 0.5F),
-                s.material("hair fair", {0.58F, 0.43F, 0.22F}, 0.5F), s.material("hair red", {0.42F, 0.16F, 0.06F}, 0.5F),
+  crowd.skin = {
+      s.material("skin 1", {0.80F, 0.58F, 0.46F}, 0.6F), s.material("skin 2", {0.62F, 0.41F, 0.29F}, 0.6F),
+      s.material("skin 3", {0.40F, 0.25F, 0.17F}, 0.6F), s.material("skin 4", {0.86F, 0.67F, 0.56F}, 0.6F),
+      s.material("skin 5", {0.26F, 0.16F, 0.11F}, 0.6F)};
+  crowd.hair = {s.material("hair black", {0.03F, 0.03F, 0.03F}, 0.5F),
+                s.material("hair brown", {0.16F, 0.09F, 0.05F}, 0.5F),
+                s.material("hair fair", {0.58F, 0.43F, 0.22F}, 0.5F),
+                s.material("hair red", {0.42F, 0.16F, 0.06F}, 0.5F),
                 s.material("hair grey", {0.52F, 0.52F, 0.52F}, 0.5F)};
   crowd.cloth = {s.material("red", {0.62F, 0.10F, 0.10F}),   s.material("navy", {0.08F, 0.12F, 0.30F}),
                  s.material("olive", {0.30F, 0.33F, 0.14F}), s.material("cream", {0.82F, 0.78F, 0.68F}),
@@ -95,7 +99,8 @@ void draw_person(Crowd& crowd, const Point& place, double turns, std::uint64_t l
   const double height = crowd.random.between(1.55, 1.95);
   const auto pose = static_cast<Pose>(crowd.random.below(static_cast<unsigned>(Pose::kCount)));
   const Outfit outfit = dress(crowd);
-  draw_figure(crowd.sketch, crowd.random, upright(place, turns), height, pose, outfit, share_of(crowd.sketch, goal, left));
+  draw_figure(crowd.sketch, crowd.random, upright(place, turns), height, pose, outfit,
+              share_of(crowd.sketch, goal, left));
 }
 
 // Three performers on the stage, the others below, most of them looking up to it.
@@ -126,13 +131,17 @@ void add_lights(Crowd& crowd) {
   const double y = kHallHeight - 0.02;
   const auto panel = [&](const char* name, double middle, const Vec3& emission) {
     s.use(s.material(name, {0.2F, 0.2F, 0.2F}, 1.0F, emission));
-    s.quad({-0.5 * x, y, middle - 0.5}, {0.5 * x, y, middle - 0.5}, {0.5 * x, y, middle + 0.5}, {-0.5 * x, y, middle + 0.5});
+    s.quad({-0.5 * x, y, middle - 0.5}, {0.5 * x, y, middle - 0.5}, {0.5 * x, y, middle + 0.5},
+           {-0.5 * x, y, middle + 0.5});
   };
   panel("front panel", 0.25 * back, {9.0F, 7.6F, 5.8F});
   panel("back panel", 0.75 * back, {7.0F, 6.6F, 6.2F});
-  s.spot_light("stage spot left", {-0.7 * x, kHallHeight - 0.8, 0.55 * back}, {-1.5, 2.0, -1.8}, {650.0F, 560.0F, 420.0F}, 0.3);
-  s.spot_light("stage spot right", {0.7 * x, kHallHeight - 0.8, 0.55 * back}, {1.5, 2.0, -1.8}, {420.0F, 500.0F, 680.0F}, 0.3);
-  s.spot_light("house spot", {0.0, kHallHeight - 0.6, -3.0}, {0.0, 0.5, 0.5 * back}, {420.0F, 330.0F, 260.0F}, 0.6);
+  s.spot_light("stage spot left", {-0.7 * x, kHallHeight - 0.8, 0.55 * back}, {-1.5, 2.0, -1.8},
+               {650.0F, 560.0F, 420.0F}, 0.3);
+  s.spot_light("stage spot right", {0.7 * x, kHallHeight - 0.8, 0.55 * back}, {1.5, 2.0, -1.8},
+               {420.0F, 500.0F, 680.0F}, 0.3);
+  s.spot_light("house spot", {0.0, kHallHeight - 0.6, -3.0}, {0.0, 0.5, 0.5 * back}, {420.0F, 330.0F, 260.0F},
+               0.6);
   s.point_light("footlight", {0.0, kStageHeight + 0.35, -0.5}, {9.0F, 6.5F, 4.0F});
 }
 

@@ -1,4 +1,5 @@
-// A wood with a path through it: trunks, branches and leaf cards on uneven ground, grass and stones between them.
+// A wood with a path through it: trunks, branches and leaf cards on uneven ground, grass and stones between
+// them.
 #include <array>
 #include <cmath>
 
@@ -37,7 +38,9 @@ void add_materials(Forest& forest) {
 }
 
 // The path winds along z; the ground is trodden flat on it.
-double path_at(double z) { return 1.6 * sin_turns(z / 31.0) + 0.7 * sin_turns(z / 13.0 + 0.2); }
+double path_at(double z) {
+  return 1.6 * sin_turns(z / 31.0) + 0.7 * sin_turns(z / 13.0 + 0.2);
+}
 double ground_at(const Forest& forest, double x, double z) {
   const double away = std::abs(x - path_at(z)) / 2.5;
   const double rough = forest.noise.octaves(x / 3.1, z / 3.1, 3) * 0.35 * (away < 1.0 ? away * away : 1.0);
@@ -56,7 +59,8 @@ void draw_ground(Forest& forest, std::uint64_t goal) {
       const double x = 0.5 * (along(i) + along(i + 1));
       const double z = 0.5 * (along(j) + along(j + 1));
       const double edge = std::abs(x - path_at(z)) + 0.8 * forest.noise.at(x, z);
-      forest.sketch.use(edge < 1.4 ? forest.path : (forest.noise.at(x / 4.0, z / 4.0) > 0.5 ? forest.grass : forest.soil));
+      forest.sketch.use(edge < 1.4 ? forest.path
+                                   : (forest.noise.at(x / 4.0, z / 4.0) > 0.5 ? forest.grass : forest.soil));
       forest.sketch.quad(point(i, j + 1), point(i + 1, j + 1), point(i + 1, j), point(i, j));
     }
   }
@@ -71,8 +75,9 @@ void draw_trees(Forest& forest, std::uint64_t goal) {
       const double off = x - path_at(z);
       if (std::abs(off) < 3.4) x = path_at(z) + (off < 0.0 ? -3.4 : 3.4);
       const double height = forest.random.between(7.0, 15.0);
-      const TreeKind& kind = forest.kinds[forest.noise.at(x / 9.0, z / 9.0) > 0.52 ? 1 + 2 * forest.random.below(2)
-                                                                                   : 2 * forest.random.below(2)];
+      const TreeKind& kind =
+          forest.kinds[forest.noise.at(x / 9.0, z / 9.0) > 0.52 ? 1 + 2 * forest.random.below(2)
+                                                                : 2 * forest.random.below(2)];
       draw_tree(forest.sketch, forest.random, {x, ground_at(forest, x, z) - 0.15, z}, height, kind,
                 share_of(forest.sketch, goal, left--));
     }
@@ -89,7 +94,8 @@ void draw_stones(Forest& forest, std::uint64_t goal) {
     const double size = forest.random.between(0.12, 0.5);
     Frame frame = upright({x, ground_at(forest, x, z), z}, forest.random.unit());
     forest.sketch.use(forest.stone);
-    forest.sketch.ellipsoid(frame, {size * forest.random.between(0.8, 1.5), 0.6 * size, size}, 2 * rings, rings);
+    forest.sketch.ellipsoid(frame, {size * forest.random.between(0.8, 1.5), 0.6 * size, size}, 2 * rings,
+                            rings);
   }
 }
 
@@ -120,7 +126,8 @@ void add_lights(Forest& forest) {
   sketch.box(post, {-0.06, -0.3, -0.06}, {0.06, 2.2, 0.06});
   sketch.box(post, {-0.5, 2.2, -0.2}, {0.1, 2.26, 0.2});
   sketch.use(sketch.material("lamp plate", {0.2F, 0.2F, 0.2F}, 1.0F, {30.0F, 20.0F, 9.0F}));
-  sketch.quad(post.at(-0.45, 2.19, -0.15), post.at(-0.1, 2.19, -0.15), post.at(-0.1, 2.19, 0.15), post.at(-0.45, 2.19, 0.15));
+  sketch.quad(post.at(-0.45, 2.19, -0.15), post.at(-0.1, 2.19, -0.15), post.at(-0.1, 2.19, 0.15),
+              post.at(-0.45, 2.19, 0.15));
   sketch.point_light("lantern", post.at(-0.3, 1.9, 0.0), {9.0F, 6.0F, 3.0F});
 }
 

@@ -8,8 +8,9 @@
 namespace gnomon {
 namespace {
 
-// What libstdc++'s std::uniform_real_distribution<double>(lo, hi) gives on a 32-bit engine: two draws, low word
-// first. Spelled out because the standard leaves the arithmetic open and the thesis' scenes depend on it.
+// What libstdc++'s std::uniform_real_distribution<double>(lo, hi) gives on a 32-bit engine: two draws, low
+// word first. Spelled out because the standard leaves the arithmetic open and the thesis' scenes depend on
+// it.
 double uniform_as_libstdcxx(std::mt19937& engine, double lo, double hi) {
   const auto low = static_cast<double>(engine());
   const double sum = low + static_cast<double>(engine()) * 0x1.0p32;
@@ -34,8 +35,10 @@ constexpr std::array<Vec3, 6> kPalette{{{0.75F, 0.22F, 0.17F},
                                         {0.80F, 0.78F, 0.74F}}};
 
 void add_palette(MeshSketch& sketch) {
-  constexpr std::array<const char*, kPalette.size()> kNames{"red", "orange", "yellow", "green", "blue", "chalk"};
-  for (unsigned i = 0; i < kPalette.size(); ++i) static_cast<void>(sketch.material(kNames[i], kPalette[i], 0.7F));
+  constexpr std::array<const char*, kPalette.size()> kNames{"red",   "orange", "yellow",
+                                                            "green", "blue",   "chalk"};
+  for (unsigned i = 0; i < kPalette.size(); ++i)
+    static_cast<void>(sketch.material(kNames[i], kPalette[i], 0.7F));
 }
 
 // Both thesis scenes come from one engine: Random100 is drawn first, Random1000 right after it.
@@ -48,7 +51,7 @@ Scene make_thesis_scene(std::string_view name, unsigned skipped, unsigned count)
     const Vec3 v1 = offset_from(v0, engine, -1.0, 1.0);
     const Vec3 v2 = offset_from(v1, engine, -1.0, 1.0);
     if (i < skipped) continue;
-    sketch.use(i % kPalette.size());
+    sketch.use(static_cast<MaterialId>(i % kPalette.size()));
     sketch.triangle(v0, v1, v2);
   }
   sketch.camera("front", {5.0, 6.0, 22.0}, {5.0, 5.0, 5.0}, 0.75, 1.0);
@@ -67,10 +70,15 @@ double cube_root(double value) {
 
 }  // namespace
 
-Scene make_random100(std::uint64_t, std::uint64_t) { return make_thesis_scene("random100", 0, 100); }
-Scene make_random1000(std::uint64_t, std::uint64_t) { return make_thesis_scene("random1000", 100, 1000); }
+Scene make_random100(std::uint64_t, std::uint64_t) {
+  return make_thesis_scene("random100", 0, 100);
+}
+Scene make_random1000(std::uint64_t, std::uint64_t) {
+  return make_thesis_scene("random1000", 100, 1000);
+}
 
-// A cube of side 10; edges shrink with the cube root of the count, so that every count is about equally dense.
+// A cube of side 10; edges shrink with the cube root of the count, so that every count is about equally
+// dense.
 Scene make_random(std::uint64_t triangles, std::uint64_t seed) {
   MeshSketch sketch("random", triangles);
   add_palette(sketch);

@@ -24,7 +24,8 @@ struct Ground {
 
 Ground add_materials(MeshSketch& sketch) {
   return {sketch.material("grass", {0.20F, 0.33F, 0.11F}), sketch.material("meadow", {0.38F, 0.40F, 0.16F}),
-          sketch.material("rock", {0.38F, 0.34F, 0.31F}), sketch.material("snow", {0.90F, 0.92F, 0.95F}, 0.6F)};
+          sketch.material("rock", {0.38F, 0.34F, 0.31F}),
+          sketch.material("snow", {0.90F, 0.92F, 0.95F}, 0.6F)};
 }
 
 MaterialId cover_of(const Ground& ground, double height, double steepness) {

@@ -1,4 +1,5 @@
-// The makers behind generate_scene, one file each. Counts are checked by the caller. Feeds generators.cpp only.
+// The makers behind generate_scene, one file each. Counts are checked by the caller. Feeds generators.cpp
+// only.
 #pragma once
 
 #include <cstdint>

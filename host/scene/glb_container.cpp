@@ -10,7 +10,8 @@
 namespace gnomon {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "binary glTF is little-endian and written as it lies in memory");
+static_assert(std::endian::native == std::endian::little,
+              "binary glTF is little-endian and written as it lies in memory");
 
 constexpr std::uint64_t kMaxFileBytes = 0xffffffffULL;
 constexpr std::uint64_t kJsonRoom = 1ULL << 24;  // more than the JSON of thousands of materials takes
@@ -19,7 +20,9 @@ constexpr std::uint32_t kMagic = 0x46546c67;      // "glTF"
 constexpr std::uint32_t kJsonChunk = 0x4e4f534a;  // "JSON"
 constexpr std::uint32_t kBinChunk = 0x004e4942;   // "BIN"
 
-std::uint64_t padded(std::uint64_t size) { return (size + 3) / 4 * 4; }
+std::uint64_t padded(std::uint64_t size) {
+  return (size + 3) / 4 * 4;
+}
 
 // Copies `size` bytes to `offset`, which must lie inside.
 void put(std::vector<unsigned char>& bytes, std::uint64_t offset, const void* data, std::size_t size) {

@@ -18,12 +18,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-enum : int { kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126, kArrayBuffer = 34962, kElementBuffer = 34963 };
+enum : int {
+  kUnsignedShort = 5123,
+  kUnsignedInt = 5125,
+  kFloat = 5126,
+  kArrayBuffer = 34962,
+  kElementBuffer = 34963
+};
 
-Json to_json(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Json to_json(const Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
 
-// The unit quaternion (x, y, z, w) that turns -z to `forward` and y to `up`: from the rotation matrix with columns
-// right, up, -forward, by its largest component (Shepperd 1978).
+// The unit quaternion (x, y, z, w) that turns -z to `forward` and y to `up`: from the rotation matrix with
+// columns right, up, -forward, by its largest component (Shepperd 1978).
 Json rotation_json(const Vec3& forward, const Vec3& up) {
   const double u[3] = {up[0], up[1], up[2]};
   const double b[3] = {-static_cast<double>(forward[0]), -static_cast<double>(forward[1]),
@@ -47,7 +55,8 @@ Vec3 some_up(const Vec3& direction) {
   const double dot = steep ? d[2] : d[1];
   const double up[3] = {-dot * d[0], (steep ? 0.0 : 1.0) - dot * d[1], (steep ? 1.0 : 0.0) - dot * d[2]};
   const double length = std::sqrt(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
-  return {static_cast<float>(up[0] / length), static_cast<float>(up[1] / length), static_cast<float>(up[2] / length)};
+  return {static_cast<float>(up[0] / length), static_cast<float>(up[1] / length),
+          static_cast<float>(up[2] / length)};
 }
 
 class Exporter {
@@ -121,7 +130,8 @@ class Exporter {
     const std::size_t offset = bytes_.size();
     bytes_.resize(offset + size);
     std::memcpy(bytes_.data() + offset, data, size);
-    json_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", offset}, {"byteLength", size}, {"target", target}});
+    json_["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", size}, {"target", target}});
     return json_["bufferViews"].size() - 1;
   }
 
@@ -140,8 +150,12 @@ class Exporter {
       }
     }
     const std::size_t view = add_view(positions.data(), positions.size() * sizeof(Vec3), kArrayBuffer);
-    return add_accessor({{"bufferView", view}, {"componentType", kFloat}, {"count", positions.size()},
-                         {"type", "VEC3"}, {"min", to_json(lo)}, {"max", to_json(hi)}});
+    return add_accessor({{"bufferView", view},
+                         {"componentType", kFloat},
+                         {"count", positions.size()},
+                         {"type", "VEC3"},
+                         {"min", to_json(lo)},
+                         {"max", to_json(hi)}});
   }
 
   // The highest 16-bit value is reserved (primitive restart), so 65535 corners are the most that fit.
@@ -154,8 +168,10 @@ class Exporter {
     } else {
       view = add_view(corners.indices.data(), corners.indices.size() * sizeof(std::uint32_t), kElementBuffer);
     }
-    return add_accessor({{"bufferView", view}, {"componentType", narrow ? kUnsignedShort : kUnsignedInt},
-                         {"count", corners.indices.size()}, {"type", "SCALAR"}});
+    return add_accessor({{"bufferView", view},
+                         {"componentType", narrow ? kUnsignedShort : kUnsignedInt},
+                         {"count", corners.indices.size()},
+                         {"type", "SCALAR"}});
   }
 
   void add_cameras() {
@@ -163,7 +179,8 @@ class Exporter {
       const Camera& camera = scene_.cameras[i];
       Json perspective{{"yfov", camera.fov_y}, {"znear", 0.01}};
       if (camera.aspect > 0.0F) perspective["aspectRatio"] = camera.aspect;
-      json_["cameras"].push_back({{"name", camera.name}, {"type", "perspective"}, {"perspective", perspective}});
+      json_["cameras"].push_back(
+          {{"name", camera.name}, {"type", "perspective"}, {"perspective", perspective}});
       nodes_.push_back({{"name", camera.name},
                         {"camera", i},
                         {"translation", to_json(camera.position)},
@@ -178,7 +195,8 @@ class Exporter {
       if (light.kind == LightKind::kArea) continue;
       Json node{{"name", light.name}, {"extensions", {{"KHR_lights_punctual", {{"light", lights.size()}}}}}};
       if (light.kind != LightKind::kDirectional) node["translation"] = to_json(light.position);
-      if (light.kind != LightKind::kPoint) node["rotation"] = rotation_json(light.direction, some_up(light.direction));
+      if (light.kind != LightKind::kPoint)
+        node["rotation"] = rotation_json(light.direction, some_up(light.direction));
       nodes_.push_back(std::move(node));
       lights.push_back(light_json(light));
     }
@@ -206,7 +224,8 @@ class Exporter {
   }
 
   void use_extension(const char* name) {
-    if (std::find(extensions_.begin(), extensions_.end(), name) == extensions_.end()) extensions_.emplace_back(name);
+    if (std::find(extensions_.begin(), extensions_.end(), name) == extensions_.end())
+      extensions_.emplace_back(name);
   }
 
   const Scene& scene_;
@@ -218,7 +237,9 @@ class Exporter {
 
 }  // namespace
 
-std::vector<unsigned char> export_glb(const Scene& scene) { return Exporter(scene).run(); }
+std::vector<unsigned char> export_glb(const Scene& scene) {
+  return Exporter(scene).run();
+}
 
 void write_glb(const Scene& scene, const std::filesystem::path& file) {
   const std::vector<unsigned char> bytes = export_glb(scene);

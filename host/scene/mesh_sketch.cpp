@@ -8,7 +8,9 @@
 namespace gnomon {
 namespace {
 
-Point to_point(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Point to_point(const Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
 
 // Twice the area times the normal, exact enough that 0 means collinear or equal corners.
 Point area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -107,7 +109,9 @@ void MeshSketch::lathe(const Frame& frame, std::span<const glm::dvec2> profile, 
   }
   sheet(
       sides, static_cast<unsigned>(profile.size() - 1),
-      [&](unsigned i, unsigned j) { return frame.origin + profile[j].x * spokes[i] + profile[j].y * frame.y; },
+      [&](unsigned i, unsigned j) {
+        return frame.origin + profile[j].x * spokes[i] + profile[j].y * frame.y;
+      },
       Rim::kClosed);
 }
 
@@ -129,7 +133,8 @@ void MeshSketch::tube(std::span<const Point> path, std::span<const double> radii
   Point x = perpendicular(glm::normalize(path[1] - path[0]));
   for (unsigned j = 0; j <= last; ++j) {
     const Point along = glm::normalize(path[j < last ? j + 1 : last] - path[j > 0 ? j - 1 : 0]);
-    const Point across = x - glm::dot(x, along) * along;  // carried on from ring to ring: the bar does not twist
+    const Point across =
+        x - glm::dot(x, along) * along;  // carried on from ring to ring: the bar does not twist
     x = glm::dot(across, across) > 1e-12 ? glm::normalize(across) : perpendicular(along);
     axes[j] = {x, glm::cross(x, along)};
   }
@@ -148,8 +153,8 @@ void MeshSketch::bar(const Point& from, const Point& to, double radius, unsigned
   tube(path, radii, sides);
 }
 
-void MeshSketch::limb(const Point& from, const Point& to, double radius_from, double radius_to, unsigned sides,
-                      unsigned rings) {
+void MeshSketch::limb(const Point& from, const Point& to, double radius_from, double radius_to,
+                      unsigned sides, unsigned rings) {
   const Frame frame = aimed(from, to);
   const double length = glm::length(to - from);
   const unsigned cap = rings < 4 ? 1 : (rings - 1) / 2;
@@ -165,7 +170,8 @@ void MeshSketch::limb(const Point& from, const Point& to, double radius_from, do
   lathe(frame, profile, sides);
 }
 
-void MeshSketch::camera(std::string name, const Point& eye, const Point& target, double fov_y, double aspect) {
+void MeshSketch::camera(std::string name, const Point& eye, const Point& target, double fov_y,
+                        double aspect) {
   Camera camera;
   camera.name = std::move(name);
   camera.position = to_vec3(eye);
@@ -195,8 +201,8 @@ void MeshSketch::point_light(std::string name, const Point& position, const Vec3
   scene_.lights.push_back(std::move(light));
 }
 
-void MeshSketch::spot_light(std::string name, const Point& position, const Point& target, const Vec3& intensity,
-                            double outer_cone) {
+void MeshSketch::spot_light(std::string name, const Point& position, const Point& target,
+                            const Vec3& intensity, double outer_cone) {
   Light light;
   light.name = std::move(name);
   light.kind = LightKind::kSpot;

@@ -1,5 +1,5 @@
-// A pencil for procedural scenes: materials, simple shapes, cameras and lights collected into a Scene. Works in double
-// precision and rounds once, per corner. Not for reading or editing scenes. Feeds the generators.
+// A pencil for procedural scenes: materials, simple shapes, cameras and lights collected into a Scene. Works
+// in double precision and rounds once, per corner. Not for reading or editing scenes. Feeds the generators.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,9 @@ class MeshSketch {
 
   // Corners counter-clockwise seen from the front. Triangles that rounding makes flat are left out.
   void triangle(const Vec3& a, const Vec3& b, const Vec3& c);
-  void triangle(const Point& a, const Point& b, const Point& c) { triangle(to_vec3(a), to_vec3(b), to_vec3(c)); }
+  void triangle(const Point& a, const Point& b, const Point& c) {
+    triangle(to_vec3(a), to_vec3(b), to_vec3(c));
+  }
   void quad(const Point& a, const Point& b, const Point& c, const Point& d);
 
   // A grid of nu x nv quads over at(i, j); the front faces di x dj. A closed rim joins i = nu to i = 0.
@@ -66,9 +68,11 @@ class MeshSketch {
   void tube(std::span<const Point> path, std::span<const double> radii, unsigned sides);
   void bar(const Point& from, const Point& to, double radius, unsigned sides);
   // A cone with round ends; about as many triangles as an ellipsoid of these sides and rings.
-  void limb(const Point& from, const Point& to, double radius_from, double radius_to, unsigned sides, unsigned rings);
+  void limb(const Point& from, const Point& to, double radius_from, double radius_to, unsigned sides,
+            unsigned rings);
 
-  void camera(std::string name, const Point& eye, const Point& target, double fov_y, double aspect = 16.0 / 9.0);
+  void camera(std::string name, const Point& eye, const Point& target, double fov_y,
+              double aspect = 16.0 / 9.0);
   void sun(const Point& travels, const Vec3& irradiance);
   void point_light(std::string name, const Point& position, const Vec3& intensity);
   void spot_light(std::string name, const Point& position, const Point& target, const Vec3& intensity,

@@ -1,5 +1,5 @@
-// A grid of pixels walked along the Morton curve: rays next to each other in a batch are near each other in the
-// picture. Feeds ray_set.
+// A grid of pixels walked along the Morton curve: rays next to each other in a batch are near each other in
+// the picture. Feeds ray_set.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,8 @@ struct GridSize {
   return {width, (count + width - 1) / width};
 }
 
-// Calls visit(x, y) for the cells of a square of side `size` (a power of two) that lie in the grid, Morton order.
+// Calls visit(x, y) for the cells of a square of side `size` (a power of two) that lie in the grid, Morton
+// order.
 template <class Visit>
 void walk_morton(const GridSize& grid, std::uint64_t x, std::uint64_t y, std::uint64_t size, Visit& visit) {
   if (x >= grid.width || y >= grid.height) return;
@@ -35,9 +36,9 @@ void walk_morton(const GridSize& grid, std::uint64_t x, std::uint64_t y, std::ui
   walk_morton(grid, x + half, y + half, half, visit);
 }
 
-// Calls visit(u, v) exactly `count` times, in Morton order over distinct cells, with a seeded point in each cell as
-// shares of the picture: u to the right, v downwards, both in [0, 1). Where the grid has a few cells more than
-// asked for, those left out are spread evenly.
+// Calls visit(u, v) exactly `count` times, in Morton order over distinct cells, with a seeded point in each
+// cell as shares of the picture: u to the right, v downwards, both in [0, 1). Where the grid has a few cells
+// more than asked for, those left out are spread evenly.
 template <class Visit>
 void for_each_cell(std::uint64_t count, double aspect, std::uint64_t seed, const Visit& visit) {
   if (count == 0) return;

@@ -29,8 +29,8 @@ Point any_direction(SteadyRandom& random) {
 }
 
 // A path that wanders and bends by `lift` upwards (or droops) in every piece.
-Branch wander(SteadyRandom& random, const Point& from, Point direction, double length, double radius, unsigned pieces,
-              double lift) {
+Branch wander(SteadyRandom& random, const Point& from, Point direction, double length, double radius,
+              unsigned pieces, double lift) {
   Branch branch{{from}, {radius}, false};
   for (unsigned i = 1; i <= pieces; ++i) {
     direction = glm::normalize(direction + 0.18 * any_direction(random) + Point{0.0, lift, 0.0});
@@ -101,19 +101,21 @@ void draw_leaves(MeshSketch& sketch, Growth& growth, double height, bool fir, st
   const auto leaves = static_cast<unsigned>(share_of(sketch, goal, 2));
   if (leaves == 0) return;
   // The crown keeps its total leaf area, whatever the number of cards it is cut into.
-  const double size = height * std::clamp((fir ? 1.7 : 2.2) / std::sqrt(static_cast<double>(leaves)), 0.006, 0.11);
+  const double size =
+      height * std::clamp((fir ? 1.7 : 2.2) / std::sqrt(static_cast<double>(leaves)), 0.006, 0.11);
   for (unsigned i = 0; i < leaves; ++i) {
     const Branch& branch = *bearing[i % bearing.size()];
     const double t = fir ? growth.random.between(0.08, 1.0) : growth.random.between(0.25, 1.0);
     const Point off = (fir ? 0.3 * size : 0.02 * height) * any_direction(growth.random);
-    draw_leaf(sketch, growth.random, point_along(branch, t) + off, size * growth.random.between(0.7, 1.25), fir);
+    draw_leaf(sketch, growth.random, point_along(branch, t) + off, size * growth.random.between(0.7, 1.25),
+              fir);
   }
 }
 
 }  // namespace
 
-void draw_tree(MeshSketch& sketch, SteadyRandom& random, const Point& foot, double height, const TreeKind& kind,
-               double triangles) {
+void draw_tree(MeshSketch& sketch, SteadyRandom& random, const Point& foot, double height,
+               const TreeKind& kind, double triangles) {
   const std::uint64_t goal = sketch.count() + static_cast<std::uint64_t>(triangles);
   const double wood = 0.35 * triangles;
   Growth growth{random, 1};
@@ -132,7 +134,8 @@ void draw_tree(MeshSketch& sketch, SteadyRandom& random, const Point& foot, doub
   draw_leaves(sketch, growth, height, kind.fir, goal);
 }
 
-void draw_flower(MeshSketch& sketch, SteadyRandom& random, const Point& foot, double height, const FlowerKind& kind) {
+void draw_flower(MeshSketch& sketch, SteadyRandom& random, const Point& foot, double height,
+                 const FlowerKind& kind) {
   const Point lean{random.between(-0.2, 0.2), 1.0, random.between(-0.2, 0.2)};
   const Frame head = aimed(foot + height * lean, foot + 1.1 * height * lean + Point{0.02, 0.0, 0.03});
   sketch.use(kind.stem);

@@ -1,5 +1,5 @@
-// Trees, flowers and grass for the outdoor scenes: many small triangles in no order. Feeds generate_cottage.cpp and
-// generate_forest.cpp.
+// Trees, flowers and grass for the outdoor scenes: many small triangles in no order. Feeds
+// generate_cottage.cpp and generate_forest.cpp.
 #pragma once
 
 #include "gnomon/scene/mesh_sketch.h"
@@ -13,8 +13,8 @@ struct TreeKind {
 };
 
 // A tree of about `triangles` triangles (at least about 60): a third of them wood, the others leaf cards.
-void draw_tree(MeshSketch& sketch, SteadyRandom& random, const Point& foot, double height, const TreeKind& kind,
-               double triangles);
+void draw_tree(MeshSketch& sketch, SteadyRandom& random, const Point& foot, double height,
+               const TreeKind& kind, double triangles);
 
 struct FlowerKind {
   MaterialId stem;
@@ -23,7 +23,8 @@ struct FlowerKind {
 };
 
 inline constexpr unsigned kFlowerTriangles = 30;
-void draw_flower(MeshSketch& sketch, SteadyRandom& random, const Point& foot, double height, const FlowerKind& kind);
+void draw_flower(MeshSketch& sketch, SteadyRandom& random, const Point& foot, double height,
+                 const FlowerKind& kind);
 
 // A bent blade of three triangles.
 inline constexpr unsigned kBladeTriangles = 3;

@@ -19,7 +19,9 @@ using Point = glm::dvec3;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::array<std::string_view, 5> kKindNames{"primary", "bounce", "shadow", "random", "parallel"};
 
-Point to_point(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Point to_point(const Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
 
 Ray make_ray(const Point& origin, const Point& direction) {
   Ray ray{};
@@ -57,7 +59,9 @@ Axes axes_across(const Point& forward) {
 
 }  // namespace
 
-std::string_view to_string(RayKind kind) { return kKindNames[static_cast<std::size_t>(kind)]; }
+std::string_view to_string(RayKind kind) {
+  return kKindNames[static_cast<std::size_t>(kind)];
+}
 
 std::optional<RayKind> ray_kind_from(std::string_view name) {
   const auto* const found = std::find(kKindNames.begin(), kKindNames.end(), name);
@@ -65,7 +69,9 @@ std::optional<RayKind> ray_kind_from(std::string_view name) {
   return static_cast<RayKind>(found - kKindNames.begin());
 }
 
-bool asks_any_hit(RayKind kind) { return kind == RayKind::kShadow || kind == RayKind::kParallel; }
+bool asks_any_hit(RayKind kind) {
+  return kind == RayKind::kShadow || kind == RayKind::kParallel;
+}
 
 Camera default_camera(const Scene& scene) {
   const Box box = box_of(scene);
@@ -130,14 +136,17 @@ std::vector<Ray> parallel_rays(const Scene& scene, std::uint64_t count, std::uin
   const Box box = box_of(scene);
   // A box's half extent along a direction is the sum of its half sides' shares.
   const Point half = 0.5 * (box.hi - box.lo);
-  const auto reach = [&](const Point& axis) { return glm::dot(half, glm::abs(axis)) + 1e-6 * box.diagonal(); };
+  const auto reach = [&](const Point& axis) {
+    return glm::dot(half, glm::abs(axis)) + 1e-6 * box.diagonal();
+  };
   const double wide = std::max(reach(axes.right), 1e-30);
   const double high = std::max(reach(axes.up), 1e-30);
   const Point start = box.middle() - (reach(forward) + 0.01 * box.diagonal()) * forward;
   std::vector<Ray> rays;
   rays.reserve(count);
   for_each_cell(count, wide / high, seed, [&](double u, double v) {
-    rays.push_back(make_ray(start + (2.0 * u - 1.0) * wide * axes.right + (1.0 - 2.0 * v) * high * axes.up, forward));
+    rays.push_back(
+        make_ray(start + (2.0 * u - 1.0) * wide * axes.right + (1.0 - 2.0 * v) * high * axes.up, forward));
   });
   return rays;
 }

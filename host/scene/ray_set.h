@@ -1,5 +1,5 @@
-// Seeded batches of rays of the kinds a renderer sends. Not for tracing them: secondary kinds take the primary hits
-// as input. Feeds trace, validate, benches and tests.
+// Seeded batches of rays of the kinds a renderer sends. Not for tracing them: secondary kinds take the
+// primary hits as input. Feeds trace, validate, benches and tests.
 #pragma once
 
 #include <cstdint>
@@ -31,24 +31,26 @@ enum class RayKind {
 // A camera that sees the whole scene from outside, for scenes without one.
 [[nodiscard]] Camera default_camera(const Scene& scene);
 
-// Rays that need no hits: primary, random, parallel. Directions are unit, tmin 0, tmax infinite. Primary and parallel
-// ones walk a grid of nearly square cells in Morton order, one seeded point per cell; `count` is met exactly by
-// leaving out cells evenly.
+// Rays that need no hits: primary, random, parallel. Directions are unit, tmin 0, tmax infinite. Primary and
+// parallel ones walk a grid of nearly square cells in Morton order, one seeded point per cell; `count` is met
+// exactly by leaving out cells evenly.
 [[nodiscard]] std::vector<Ray> primary_rays(const Scene& scene, std::uint64_t count, std::uint64_t seed);
 [[nodiscard]] std::vector<Ray> random_rays(const Scene& scene, std::uint64_t count, std::uint64_t seed);
 [[nodiscard]] std::vector<Ray> parallel_rays(const Scene& scene, std::uint64_t count, std::uint64_t seed);
 
-// Rays that start at the hits of primary ones (offset 1e-5 of the bounds' diagonal along the normal on the side the
-// ray came from), in primary order: one per hit, thinned evenly to at most `count`, none for misses.
+// Rays that start at the hits of primary ones (offset 1e-5 of the bounds' diagonal along the normal on the
+// side the ray came from), in primary order: one per hit, thinned evenly to at most `count`, none for misses.
 // Throws Error{kInvalidArgument} when hits and rays differ in number or a hit names no triangle of the scene.
-// A shadow ray goes to a light chosen by the seed, or the next that can reach the place: in front of the surface,
-// within its range and cone; where none can, there is no ray. It ends at the light (tmax 0.9999 of the distance,
-// infinite for directional ones); on area lights at a random point. A scene without lights counts as lit by a sun
-// that travels along (-0.4, -0.8, -0.45).
-[[nodiscard]] std::vector<Ray> bounce_rays(const Scene& scene, std::span<const Ray> primary, std::span<const Hit> hits,
-                                           std::uint64_t count, std::uint64_t seed);
-[[nodiscard]] std::vector<Ray> shadow_rays(const Scene& scene, std::span<const Ray> primary, std::span<const Hit> hits,
-                                           std::uint64_t count, std::uint64_t seed);
+// A shadow ray goes to a light chosen by the seed, or the next that can reach the place: in front of the
+// surface, within its range and cone; where none can, there is no ray. It ends at the light (tmax 0.9999 of
+// the distance, infinite for directional ones); on area lights at a random point. A scene without lights
+// counts as lit by a sun that travels along (-0.4, -0.8, -0.45).
+[[nodiscard]] std::vector<Ray> bounce_rays(const Scene& scene, std::span<const Ray> primary,
+                                           std::span<const Hit> hits, std::uint64_t count,
+                                           std::uint64_t seed);
+[[nodiscard]] std::vector<Ray> shadow_rays(const Scene& scene, std::span<const Ray> primary,
+                                           std::span<const Hit> hits, std::uint64_t count,
+                                           std::uint64_t seed);
 
 // Raw little-endian files: 32-byte rays, 16-byte hits (layout.h), nothing else.
 // Throws Error{kIo} or Error{kBadScene} (size not a multiple of the record).

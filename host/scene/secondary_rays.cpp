@@ -16,11 +16,15 @@ namespace {
 using Point = glm::dvec3;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr double kOffset = 1e-5;       // of the bounds' diagonal
+constexpr double kOffset = 1e-5;         // of the bounds' diagonal
 constexpr double kShadowReach = 0.9999;  // of the distance to the light: its own surface is not an occluder
 
-Point to_point(const float* v) { return {v[0], v[1], v[2]}; }
-Point to_point(const Vec3& v) { return to_point(v.data()); }
+Point to_point(const float* v) {
+  return {v[0], v[1], v[2]};
+}
+Point to_point(const Vec3& v) {
+  return to_point(v.data());
+}
 
 Ray make_ray(const Point& origin, const Point& direction, float tmax) {
   Ray ray{};
@@ -54,8 +58,8 @@ Place place_of(const Triangle& triangle, const Ray& ray, const Hit& hit, double 
 }
 
 // Indices of the rays that hit, thinned evenly to at most `count`.
-std::vector<std::uint64_t> chosen_hits(const Scene& scene, std::span<const Ray> primary, std::span<const Hit> hits,
-                                       std::uint64_t count) {
+std::vector<std::uint64_t> chosen_hits(const Scene& scene, std::span<const Ray> primary,
+                                       std::span<const Hit> hits, std::uint64_t count) {
   if (primary.size() != hits.size()) {
     throw Error(ErrorCode::kInvalidArgument, std::to_string(primary.size()) + " rays do not go with " +
                                                  std::to_string(hits.size()) + " hits");
@@ -73,7 +77,8 @@ std::vector<std::uint64_t> chosen_hits(const Scene& scene, std::span<const Ray> 
   if (found.size() <= count) return found;
   std::vector<std::uint64_t> thinned(count);
   const double step = static_cast<double>(found.size()) / static_cast<double>(count);
-  for (std::uint64_t k = 0; k < count; ++k) thinned[k] = found[static_cast<std::uint64_t>(static_cast<double>(k) * step)];
+  for (std::uint64_t k = 0; k < count; ++k)
+    thinned[k] = found[static_cast<std::uint64_t>(static_cast<double>(k) * step)];
   return thinned;
 }
 
@@ -114,30 +119,34 @@ std::vector<Emitter> emitters_of(const Scene& scene, const Light& default_sun) {
 Point point_on(const Scene& scene, const Emitter& emitter, SteadyRandom& random) {
   const auto& areas = emitter.running_areas;
   const auto chosen = std::upper_bound(areas.begin(), areas.end() - 1, random.unit() * areas.back());
-  const Triangle& t = scene.triangles[emitter.light->triangles[static_cast<std::size_t>(chosen - areas.begin())]];
+  const Triangle& t =
+      scene.triangles[emitter.light->triangles[static_cast<std::size_t>(chosen - areas.begin())]];
   const double root = std::sqrt(random.unit());
   const double b1 = root * (1.0 - random.unit());
   const double b0 = 1.0 - root;
   return b0 * to_point(t.v0) + b1 * to_point(t.v1) + (1.0 - b0 - b1) * to_point(t.v2);
 }
 
-// The shadow ray from a place to a light, or nothing where that light cannot reach: behind the surface, out of range
-// or outside the cone.
-std::optional<Ray> shadow_ray(const Scene& scene, const Emitter& emitter, const Place& place, SteadyRandom& random) {
+// The shadow ray from a place to a light, or nothing where that light cannot reach: behind the surface, out
+// of range or outside the cone.
+std::optional<Ray> shadow_ray(const Scene& scene, const Emitter& emitter, const Place& place,
+                              SteadyRandom& random) {
   const Light& light = *emitter.light;
   if (light.kind == LightKind::kDirectional) {
     const Point direction = -glm::normalize(to_point(light.direction));
     if (glm::dot(direction, place.normal) <= 0.0) return std::nullopt;
     return make_ray(place.position, direction, kInfinity);
   }
-  const Point target = light.kind == LightKind::kArea ? point_on(scene, emitter, random) : to_point(light.position);
+  const Point target =
+      light.kind == LightKind::kArea ? point_on(scene, emitter, random) : to_point(light.position);
   const double distance = glm::length(target - place.position);
   const Point direction = (target - place.position) / distance;
   if (!(glm::dot(direction, place.normal) > 0.0)) return std::nullopt;  // also where the distance is 0
   if (light.kind != LightKind::kArea && light.range > 0.0F && distance > light.range) return std::nullopt;
   if (light.kind == LightKind::kSpot) {
     const double turns = static_cast<double>(light.outer_cone) / (2.0 * kPi);
-    if (-glm::dot(direction, glm::normalize(to_point(light.direction))) < cos_turns(turns)) return std::nullopt;
+    if (-glm::dot(direction, glm::normalize(to_point(light.direction))) < cos_turns(turns))
+      return std::nullopt;
   }
   return make_ray(place.position, direction, static_cast<float>(kShadowReach * distance));
 }

@@ -1,5 +1,6 @@
-// Random numbers and angles whose bits depend neither on the standard library nor on the libm: integer steps and the
-// four IEEE operations only. Not cryptographic, not for statistics. Feeds the generators and the ray sets.
+// Random numbers and angles whose bits depend neither on the standard library nor on the libm: integer steps
+// and the four IEEE operations only. Not cryptographic, not for statistics. Feeds the generators and the ray
+// sets.
 #pragma once
 
 #include <cmath>
@@ -14,8 +15,8 @@ namespace gnomon {
   return value ^ (value >> 31);
 }
 
-// A splitmix64 stream. Streams of one seed are independent of each other, so the n-th object or ray draws the same
-// numbers whatever was drawn before it.
+// A splitmix64 stream. Streams of one seed are independent of each other, so the n-th object or ray draws the
+// same numbers whatever was drawn before it.
 class SteadyRandom {
  public:
   explicit SteadyRandom(std::uint64_t seed, std::uint64_t stream = 0)
@@ -38,7 +39,8 @@ class SteadyRandom {
 
 inline constexpr double kPi = 3.14159265358979323846;
 
-// Sine of an angle in full turns, by its Taylor series on a quarter turn: within 1e-15, the same bits everywhere.
+// Sine of an angle in full turns, by its Taylor series on a quarter turn: within 1e-15, the same bits
+// everywhere.
 [[nodiscard]] inline double sin_turns(double turns) {
   double t = turns - std::floor(turns + 0.5);
   if (t > 0.25) t = 0.5 - t;
@@ -48,6 +50,8 @@ inline constexpr double kPi = 3.14159265358979323846;
   for (int k = 20; k >= 2; k -= 2) term = 1.0 - x * x * term / static_cast<double>(k * (k + 1));
   return x * term;
 }
-[[nodiscard]] inline double cos_turns(double turns) { return sin_turns(turns + 0.25); }
+[[nodiscard]] inline double cos_turns(double turns) {
+  return sin_turns(turns + 0.25);
+}
 
 }  // namespace gnomon

@@ -1,5 +1,5 @@
-// Seeded value noise over the ground plane, for height fields and scattered colours. Lattice values come from integer
-// hashes, so the bits are the same everywhere. Feeds the outdoor generators.
+// Seeded value noise over the ground plane, for height fields and scattered colours. Lattice values come from
+// integer hashes, so the bits are the same everywhere. Feeds the outdoor generators.
 #pragma once
 
 #include <cmath>

@@ -13,7 +13,8 @@ namespace gnomon {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& file, int reason) {
-  throw Error(ErrorCode::kIo, "cannot write " + file.string() + ": " + std::generic_category().message(reason));
+  throw Error(ErrorCode::kIo,
+              "cannot write " + file.string() + ": " + std::generic_category().message(reason));
 }
 
 // Deletes the temporary on every way out but the good one.
@@ -41,7 +42,8 @@ void write_file(const std::filesystem::path& file, std::span<const std::byte> by
   Temporary temporary(file);
   std::FILE* const stream = std::fopen(temporary.path().c_str(), "wb");
   if (stream == nullptr) fail(file, errno);
-  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size() && std::fflush(stream) == 0;
+  const bool written =
+      std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size() && std::fflush(stream) == 0;
   const int reason = written ? 0 : errno;
   const bool closed = std::fclose(stream) == 0;
   if (!written || !closed) fail(file, written ? errno : reason);

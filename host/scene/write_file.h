@@ -1,5 +1,5 @@
-// Writing a whole file or nothing: into a temporary beside it that takes its name at the end. Not for streams and
-// devices. Feeds gltf_export and ray_files.
+// Writing a whole file or nothing: into a temporary beside it that takes its name at the end. Not for streams
+// and devices. Feeds gltf_export and ray_files.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,8 @@
 
 namespace gnomon {
 
-// Replaces `file` by `bytes`. Throws Error{kIo} with path and reason; what was there before is then untouched.
+// Replaces `file` by `bytes`. Throws Error{kIo} with path and reason; what was there before is then
+// untouched.
 void write_file(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
 }  // namespace gnomon

@@ -20,7 +20,9 @@ using gnomon::Triangle;
 
 namespace {
 
-bool is_thesis(const GeneratorInfo& info) { return info.min_triangles == info.default_triangles; }
+bool is_thesis(const GeneratorInfo& info) {
+  return info.min_triangles == info.default_triangles;
+}
 std::uint64_t small_count(const GeneratorInfo& info) {
   return is_thesis(info) ? info.min_triangles : std::max<std::uint64_t>(info.min_triangles, 20'000);
 }
@@ -70,7 +72,8 @@ TEST_CASE("counts are within ten percent from the minimum to 100000, and exact w
       const double made = static_cast<double>(generate_scene(info.name, wanted, seed).triangles.size());
       CAPTURE(info.name, wanted, seed, made);
       const bool exact = info.name.substr(0, 6) == "random";
-      REQUIRE(std::abs(made - static_cast<double>(wanted)) <= (exact ? 0.0 : 0.1 * static_cast<double>(wanted)));
+      REQUIRE(std::abs(made - static_cast<double>(wanted)) <=
+              (exact ? 0.0 : 0.1 * static_cast<double>(wanted)));
     }
   }
 }
@@ -110,7 +113,8 @@ TEST_CASE("area lights hold exactly the emissive triangles") {
       if (emission[0] > 0.0F || emission[1] > 0.0F || emission[2] > 0.0F) emissive.insert(i);
     }
     std::set<std::uint32_t> held;
-    for (const gnomon::Light& light : scene.lights) held.insert(light.triangles.begin(), light.triangles.end());
+    for (const gnomon::Light& light : scene.lights)
+      held.insert(light.triangles.begin(), light.triangles.end());
     REQUIRE(held == emissive);
   }
 }
@@ -175,7 +179,8 @@ TEST_CASE("an unknown name is answered with the known ones") {
   } catch (const gnomon::Error& error) {
     CHECK(error.code() == gnomon::ErrorCode::kInvalidArgument);
     CHECK_THAT(error.what(), Catch::Contains("\"castle\""));
-    for (const GeneratorInfo& info : gnomon::generators()) CHECK_THAT(error.what(), Catch::Contains(std::string(info.name)));
+    for (const GeneratorInfo& info : gnomon::generators())
+      CHECK_THAT(error.what(), Catch::Contains(std::string(info.name)));
   }
 }
 
@@ -194,9 +199,15 @@ TEST_CASE("the shipped scenes are what their generators make, byte for byte") {
     std::uint64_t triangles;
   };
   // The same figures stand in scenes/SOURCES.md.
-  for (const Shipped& shipped : {Shipped{"atrium", 60'000}, {"city", 40'000}, {"cottage", 12'000},
-                                 {"cottage-walls", 12'000}, {"terrain", 20'000}, {"forest", 40'000}, {"crowd", 40'000},
-                                 {"random100", 100}, {"random1000", 1000}}) {
+  for (const Shipped& shipped : {Shipped{"atrium", 60'000},
+                                 {"city", 40'000},
+                                 {"cottage", 12'000},
+                                 {"cottage-walls", 12'000},
+                                 {"terrain", 20'000},
+                                 {"forest", 40'000},
+                                 {"crowd", 40'000},
+                                 {"random100", 100},
+                                 {"random1000", 1000}}) {
     CAPTURE(shipped.name);
     std::ifstream file(std::string(GNOMON_SCENES_FOLDER "/") + shipped.name + ".glb", std::ios::binary);
     const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

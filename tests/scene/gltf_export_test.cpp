@@ -44,7 +44,8 @@ Parts take_apart(const Bytes& glb) {
   const std::size_t json_size = word_at(glb, 12);
   REQUIRE(std::memcmp(glb.data() + 16, "JSON", 4) == 0);
   REQUIRE(json_size % 4 == 0);
-  Parts parts{nlohmann::json::parse(glb.begin() + 20, glb.begin() + 20 + static_cast<std::ptrdiff_t>(json_size)), {}};
+  Parts parts{
+      nlohmann::json::parse(glb.begin() + 20, glb.begin() + 20 + static_cast<std::ptrdiff_t>(json_size)), {}};
   const std::size_t bin = 20 + json_size;
   if (bin == glb.size()) return parts;
   REQUIRE(std::memcmp(glb.data() + bin + 4, "BIN", 4) == 0);
@@ -82,7 +83,8 @@ bool near(const gnomon::Vec3& a, const gnomon::Vec3& b) {
 }
 
 std::vector<Light> sorted_lights(std::vector<Light> lights) {
-  std::stable_partition(lights.begin(), lights.end(), [](const Light& l) { return l.kind != LightKind::kArea; });
+  std::stable_partition(lights.begin(), lights.end(),
+                        [](const Light& l) { return l.kind != LightKind::kArea; });
   return lights;
 }
 
@@ -143,8 +145,14 @@ TEST_CASE("cameras and lights come back within 1e-5") {
 
 TEST_CASE("cameras and lights that look any way at all come back") {
   Scene scene = square();
-  for (const gnomon::Vec3& forward : {gnomon::Vec3{0, -1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {-1, 0, 0},
-                                      {0.6F, 0.0F, 0.8F}, {-0.48F, -0.6F, 0.64F}}) {
+  for (const gnomon::Vec3& forward : {gnomon::Vec3{0, -1, 0},
+                                      {0, 1, 0},
+                                      {0, 0, 1},
+                                      {0, 0, -1},
+                                      {1, 0, 0},
+                                      {-1, 0, 0},
+                                      {0.6F, 0.0F, 0.8F},
+                                      {-0.48F, -0.6F, 0.64F}}) {
     gnomon::Camera camera;
     camera.forward = forward;
     const Point other = std::abs(forward[1]) > 0.9F ? Point{0.0, 0.0, 1.0} : Point{0.0, 1.0, 0.0};
@@ -191,7 +199,8 @@ TEST_CASE("views lie inside the buffer on four-byte boundaries and say what they
     const std::size_t size = corners ? 12 : (accessor["componentType"] == 5123 ? 2 : 4);
     REQUIRE(view["byteOffset"].get<std::size_t>() % 4 == 0);
     REQUIRE(view["byteLength"] == accessor["count"].get<std::size_t>() * size);
-    REQUIRE(view["byteOffset"].get<std::size_t>() + view["byteLength"].get<std::size_t>() <= buffer["byteLength"]);
+    REQUIRE(view["byteOffset"].get<std::size_t>() + view["byteLength"].get<std::size_t>() <=
+            buffer["byteLength"]);
     REQUIRE(view["target"] == (corners ? 34962 : 34963));
   }
 }
@@ -202,7 +211,8 @@ TEST_CASE("position accessors state the exact bounds of their corners") {
     if (accessor["type"] != "VEC3") continue;
     const auto& view = parts.json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
     std::vector<gnomon::Vec3> corners(accessor["count"].get<std::size_t>());
-    std::memcpy(corners.data(), parts.buffer.data() + view["byteOffset"].get<std::size_t>(), corners.size() * 12);
+    std::memcpy(corners.data(), parts.buffer.data() + view["byteOffset"].get<std::size_t>(),
+                corners.size() * 12);
     for (unsigned axis = 0; axis < 3; ++axis) {
       CAPTURE(accessor.dump(), axis);
       const auto less = [&](const gnomon::Vec3& a, const gnomon::Vec3& b) { return a[axis] < b[axis]; };

@@ -33,41 +33,41 @@ class Dice {
 // A document with everything the importer reads.
 GltfBuilder rich_document() {
   GltfBuilder b;
-  const int positions = b.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 1});
-  const int strip = b.add_indices(std::vector<std::uint16_t>{0, 1, 2, 3, 4});
-  const int fan = b.add_indices(std::vector<std::uint32_t>{0, 1, 3, 2});
-  const int list = b.add_indices(std::vector<std::uint8_t>{0, 1, 2, 2, 1, 3});
-  const std::vector<std::int16_t> shorts{0, 0, 0, 0, 900, 0, 0, 0, 0, 900, 0, 0};
-  const int quantized = b.add_accessor({{"bufferView", b.add_view(shorts, 8)}, {"componentType", kShort},
-                                        {"normalized", true}, {"count", 3}, {"type", "VEC3"}});
-  const int sparse_at = b.add_view(std::vector<std::uint8_t>{1, 2});
-  const int sparse_to = b.add_view(std::vector<float>{3, 0, 0, 0, 3, 0});
-  const int sparse = b.add_accessor(
-      {{"componentType", kFloat}, {"count", 3}, {"type", "VEC3"},
-       {"sparse", {{"count", 2}, {"indices", {{"bufferView", sparse_at}, {"componentType", kUnsignedByte}}},
-                   {"values", {{"bufferView", sparse_to}, {"byteOffset", 0}}}}}});
-  const auto primitive = [](int position, int index, int mode) {
-    Json made = {{"attributes", {{"POSITION", position}}}, {"mode", mode}, {"material", mode % 2}};
-    if (index >= 0) made["indices"] = index;
-    return made;
-  };
-  b.json["meshes"] = {{{"name", "A"}, {"primitives", {primitive(positions, strip, 5), primitive(positions, fan, 6)}}},
-                      {{"primitives", {primitive(positions, list, 4), primitive(quantized, -1, 4)}}},
-                      {{"weights", {0.5}}, {"primitives", {primitive(sparse, -1, 4), primitive(positions, -1, 1)}}}};
-  b.json["materials"] = {{{"name", "Lamp"}, {"emissiveFactor", {1, 2, 3}},
-                          {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 4}}}}}},
-                         {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}, {"roughnessFactor", 0.5}}}}};
-  b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"aspectRatio", 1}, {"znear", 0.1}}}}};
-  b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
-      {{"type", "spot"}, {"spot", {{"outerConeAngle", 0.5}}}, {"range", 3}}, {{"type", "point"}, {"color", {1, 1, 1}}}};
-  b.json["nodes"] = {{{"children", {1, 2}}, {"rotation", {0, 0, 0, 1}}, {"mesh", 0}},
-                     {{"mesh", 1}, {"scale", {-1, 2, 1}}, {"children", {3}}},
-                     {{"mesh", 2}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1}}, {"skin", 0}},
-                     {{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
-                     {{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}, {"translation", {0, 1, 0}}}};
-  b.json["scenes"] = {{{"nodes", {0, 4}}}};
-  b.json["scene"] = 0;
-  b.json["extensionsUsed"] = {"KHR_lights_punctual", "KHR_mesh_quantization"};
+  b.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 2, 1, 1});
+  b.add_indices(std::vector<std::uint16_t>{0, 1, 2, 3, 4});
+  b.add_indices(std::vector<std::uint32_t>{0, 1, 3, 2});
+  b.add_indices(std::vector<std::uint8_t>{0, 1, 2, 2, 1, 3});
+  b.add_view(std::vector<std::int16_t>{0, 0, 0, 0, 900, 0, 0, 0, 0, 900, 0, 0}, 8);  // view 4
+  b.add_view(std::vector<std::uint8_t>{1, 2});
+  b.add_view(std::vector<float>{3, 0, 0, 0, 3, 0});
+  b.add_accessor(Json::parse(
+      R"({"bufferView": 4, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC3"})"));
+  b.add_accessor(Json::parse(R"({"componentType": 5126, "count": 3, "type": "VEC3", "sparse": {"count": 2,
+      "indices": {"bufferView": 5, "componentType": 5121}, "values": {"bufferView": 6, "byteOffset": 0}}})"));
+  b.json.update(Json::parse(R"({
+    "meshes": [
+      {"name": "A", "primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "mode": 5, "material": 1},
+                                   {"attributes": {"POSITION": 0}, "indices": 2, "mode": 6, "material": 0}]},
+      {"primitives": [{"attributes": {"POSITION": 0}, "indices": 3, "mode": 4, "material": 0},
+                      {"attributes": {"POSITION": 4}, "material": 0}]},
+      {"weights": [0.5], "primitives": [{"attributes": {"POSITION": 5}, "material": 0},
+                                        {"attributes": {"POSITION": 0}, "mode": 1}]}],
+    "materials": [
+      {"name": "Lamp", "emissiveFactor": [1, 2, 3],
+       "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}},
+      {"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1], "roughnessFactor": 0.5}}],
+    "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "aspectRatio": 1, "znear": 0.1}}],
+    "extensions": {"KHR_lights_punctual": {"lights": [
+      {"type": "spot", "spot": {"outerConeAngle": 0.5}, "range": 3}, {"type": "point", "color": [1, 1, 1]}]}},
+    "nodes": [
+      {"children": [1, 2], "rotation": [0, 0, 0, 1], "mesh": 0},
+      {"mesh": 1, "scale": [-1, 2, 1], "children": [3]},
+      {"mesh": 2, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1], "skin": 0},
+      {"camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}},
+      {"extensions": {"KHR_lights_punctual": {"light": 1}}, "translation": [0, 1, 0]}],
+    "scenes": [{"nodes": [0, 4]}],
+    "scene": 0,
+    "extensionsUsed": ["KHR_lights_punctual", "KHR_mesh_quantization"]})"));
   return b;
 }
 
@@ -229,8 +229,9 @@ TEST_CASE("a damaged .glb loads or is refused") {
 TEST_CASE("a .gltf that is well-formed JSON with wrong values loads or is refused") {
   Dice dice(3);
   Tally tally;
-  for (int round = 0; round < 3 * kRoundsPerSeed; ++round) {
-    GltfBuilder builder = rich_document();
+  const GltfBuilder whole = rich_document();
+  for (int round = 0; round < 2 * kRoundsPerSeed; ++round) {
+    GltfBuilder builder = whole;
     for (std::size_t steps = 1 + dice.below(4); steps > 0; --steps) damage_document(builder, dice);
     INFO("round " << round);
     const bool as_glb = dice.below(2) == 0;

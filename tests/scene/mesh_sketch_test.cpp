@@ -53,7 +53,8 @@ TEST_CASE("the steady random numbers are these") {
   const std::array<std::uint64_t, 3> first{random.bits(), random.bits(), random.bits()};
   gnomon::SteadyRandom other(1, 1);
   CHECK(first[0] != other.bits());
-  CHECK(first == std::array<std::uint64_t, 3>{0x017daf0019666393ULL, 0xd9e484272f675712ULL, 0x29bd10db6bcd372fULL});
+  CHECK(first ==
+        std::array<std::uint64_t, 3>{0x017daf0019666393ULL, 0xd9e484272f675712ULL, 0x29bd10db6bcd372fULL});
 }
 
 TEST_CASE("solids are closed, face outwards and have their volume") {
@@ -62,7 +63,9 @@ TEST_CASE("solids are closed, face outwards and have their volume") {
   const Scene box = drawn([&](MeshSketch& s) { s.box(tilted, {-1.0, -0.5, 0.0}, {1.0, 0.5, 2.0}); });
   const Scene lathe = drawn([&](MeshSketch& s) { s.lathe(tilted, can, 200); });
   const Scene ellipsoid = drawn([&](MeshSketch& s) { s.ellipsoid(tilted, {1.0, 2.0, 0.5}, 120, 90); });
-  const Scene limb = drawn([&](MeshSketch& s) { s.limb({0.0, 1.0, 0.0}, {3.0, 1.0, 0.0}, 0.5, 0.5, 120, 60); });
+  const Scene limb = drawn([&](MeshSketch& s) {
+    s.limb({0.0, 1.0, 0.0}, {3.0, 1.0, 0.0}, 0.5, 0.5, 120, 60);
+  });
   CHECK(signed_volume(box) == Approx(4.0).epsilon(1e-5));
   CHECK(signed_volume(lathe) == Approx(0.5 * gnomon::kPi).epsilon(1e-3));
   CHECK(signed_volume(ellipsoid) == Approx(4.0 / 3.0 * gnomon::kPi).epsilon(3e-3));

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <fstream>
-#include <set>
 
 #include "gnomon/base/error.h"
 #include "gnomon/scene/generators.h"
@@ -14,44 +12,13 @@
 using namespace gnomon_test;
 using gnomon::generate_scene;
 using gnomon::Hit;
-using gnomon::Light;
-using gnomon::LightKind;
 using gnomon::Ray;
 using gnomon::RayKind;
 using gnomon::Scene;
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-bool same_rays(const std::vector<Ray>& a, const std::vector<Ray>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Ray)) == 0;
-}
-
-// A square floor of side 4 at y = 0 under a camera at height 2 that looks straight down.
-Scene floor_scene() {
-  Scene scene;
-  scene.materials.resize(1);
-  scene.triangles = {{{-2, 0, 2}, {2, 0, 2}, {2, 0, -2}}, {{-2, 0, 2}, {2, 0, -2}, {-2, 0, -2}}};
-  scene.material_ids = {0, 0};
-  gnomon::Camera camera;
-  camera.position = {0.0F, 2.0F, 0.0F};
-  camera.forward = {0.0F, -1.0F, 0.0F};
-  camera.up = {0.0F, 0.0F, -1.0F};
-  camera.fov_y = 1.2F;
-  scene.cameras = {camera};
-  return scene;
-}
-
-Light light_at(LightKind kind, const gnomon::Vec3& position) {
-  Light light;
-  light.kind = kind;
-  light.position = position;
-  light.direction = {0.0F, -1.0F, 0.0F};
-  return light;
-}
-
-// Column and row of a primary ray in a picture of n by n pixels, and the place within the pixel.
+// Column and row of a primary ray in a picture of n by n pixels.
 struct Pixel {
   std::uint64_t x, y;
 };
@@ -77,7 +44,8 @@ std::uint64_t morton(const Pixel& pixel) {
 }  // namespace
 
 TEST_CASE("names of ray kinds come back as the kinds") {
-  for (const RayKind kind : {RayKind::kPrimary, RayKind::kBounce, RayKind::kShadow, RayKind::kRandom, RayKind::kParallel}) {
+  for (const RayKind kind :
+       {RayKind::kPrimary, RayKind::kBounce, RayKind::kShadow, RayKind::kRandom, RayKind::kParallel}) {
     CHECK(gnomon::ray_kind_from(gnomon::to_string(kind)) == kind);
     CHECK(gnomon::asks_any_hit(kind) == (kind == RayKind::kShadow || kind == RayKind::kParallel));
   }
@@ -114,27 +82,6 @@ TEST_CASE("batches have exactly the count asked for, of unit rays without limits
   }
 }
 
-TEST_CASE("every kind of ray repeats with its seed and changes with another") {
-  Scene scene = generate_scene("atrium", 16'000, 1);
-  const auto primary = gnomon::primary_rays(scene, 60, 1);
-  const auto hits = nearest_hits(scene, primary);
-  const auto all = [&](std::uint64_t seed) {
-    return std::vector<std::vector<Ray>>{gnomon::primary_rays(scene, 60, seed), gnomon::random_rays(scene, 60, seed),
-                                         gnomon::parallel_rays(scene, 60, seed),
-                                         gnomon::bounce_rays(scene, primary, hits, 60, seed),
-                                         gnomon::shadow_rays(scene, primary, hits, 60, seed)};
-  };
-  const auto first = all(3);
-  const auto again = all(3);
-  const auto other = all(4);
-  for (std::size_t kind = 0; kind < first.size(); ++kind) {
-    CAPTURE(kind);
-    REQUIRE_FALSE(first[kind].empty());
-    REQUIRE(same_rays(first[kind], again[kind]));
-    REQUIRE_FALSE(same_rays(first[kind], other[kind]));
-  }
-}
-
 TEST_CASE("the default camera has the whole scene in view") {
   Scene scene = generate_scene("random100", 100, 1);
   scene.cameras = {gnomon::default_camera(scene)};
@@ -151,10 +98,12 @@ TEST_CASE("the default camera has the whole scene in view") {
 
 TEST_CASE("an empty scene still has rays, all of them finite") {
   const Scene scene;
-  for (const auto& rays : {gnomon::primary_rays(scene, 9, 1), gnomon::random_rays(scene, 9, 1), gnomon::parallel_rays(scene, 9, 1)}) {
+  for (const auto& rays : {gnomon::primary_rays(scene, 9, 1), gnomon::random_rays(scene, 9, 1),
+                           gnomon::parallel_rays(scene, 9, 1)}) {
     REQUIRE(rays.size() == 9);
     for (const Ray& ray : rays) {
-      for (unsigned k = 0; k < 3; ++k) REQUIRE((std::isfinite(ray.origin[k]) && std::isfinite(ray.direction[k])));
+      for (unsigned k = 0; k < 3; ++k)
+        REQUIRE((std::isfinite(ray.origin[k]) && std::isfinite(ray.direction[k])));
     }
   }
 }
@@ -166,7 +115,8 @@ TEST_CASE("random rays start inside the bounds and go every way alike") {
   Point squares{0.0};
   constexpr std::uint64_t kCount = 40'000;
   for (const Ray& ray : gnomon::random_rays(scene, kCount, 2)) {
-    for (unsigned k = 0; k < 3; ++k) REQUIRE((ray.origin[k] >= bounds.lo[k] && ray.origin[k] <= bounds.hi[k]));
+    for (unsigned k = 0; k < 3; ++k)
+      REQUIRE((ray.origin[k] >= bounds.lo[k] && ray.origin[k] <= bounds.hi[k]));
     mean += to_point(ray.direction) / static_cast<double>(kCount);
     squares += to_point(ray.direction) * to_point(ray.direction) / static_cast<double>(kCount);
   }
@@ -204,141 +154,6 @@ TEST_CASE("parallel rays travel with the sun, start outside and cover the scene"
   }
 }
 
-TEST_CASE("bounce rays leave the surface on the side the primary ray came from") {
-  const Scene scene = generate_scene("random", 2000, 1);
-  const auto primary = gnomon::random_rays(scene, 600, 3);
-  const auto hits = nearest_hits(scene, primary);
-  const auto rays = gnomon::bounce_rays(scene, primary, hits, 600, 1);
-  const gnomon::Bounds bounds = gnomon::bounds_of(scene);
-  const double offset = 1e-5 * glm::length(to_point(bounds.hi) - to_point(bounds.lo));
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    if (hits[i].primitive == GN_NONE) continue;
-    CAPTURE(i, next);
-    REQUIRE(next < rays.size());
-    const gnomon::Triangle& triangle = scene.triangles[hits[i].primitive];
-    Point normal = glm::normalize(area_vector(triangle));
-    if (glm::dot(normal, to_point(primary[i].direction)) > 0.0) normal = -normal;
-    REQUIRE(glm::dot(normal, to_point(rays[next].direction)) > -1e-6);
-    const double height = glm::dot(normal, to_point(rays[next].origin) - to_point(triangle.v0));
-    REQUIRE(height == Approx(offset).margin(3e-6));
-    ++next;
-  }
-  CHECK(next == rays.size());
-  CHECK(next > 50);
-}
-
-TEST_CASE("bounce rays are weighted by the cosine") {
-  const Scene scene = floor_scene();
-  const auto primary = gnomon::primary_rays(scene, 20'000, 3);
-  double mean = 0.0;
-  const auto rays = gnomon::bounce_rays(scene, primary, nearest_hits(scene, primary), 20'000, 1);
-  for (const Ray& ray : rays) mean += static_cast<double>(ray.direction[1]) / static_cast<double>(rays.size());
-  CHECK(rays.size() == 20'000);
-  CHECK(mean == Approx(2.0 / 3.0).margin(0.006));
-}
-
-TEST_CASE("secondary rays are at most as many as asked for, spread over all hits, none for misses") {
-  const Scene scene = floor_scene();
-  const auto primary = gnomon::primary_rays(scene, 400, 3);
-  auto hits = nearest_hits(scene, primary);
-  const auto thinned = gnomon::bounce_rays(scene, primary, hits, 7, 1);
-  CHECK(thinned.size() == 7);
-  CHECK(same_rays({thinned.begin(), thinned.begin() + 1}, gnomon::bounce_rays(scene, {primary.data(), 1}, {hits.data(), 1}, 9, 1)));
-  for (std::size_t i = 0; i < hits.size(); i += 2) hits[i] = {kInfinity, 0.0F, 0.0F, GN_NONE};
-  CHECK(gnomon::bounce_rays(scene, primary, hits, 400, 1).size() == 200);
-  CHECK(gnomon::shadow_rays(scene, primary, hits, 400, 1).size() == 200);
-}
-
-TEST_CASE("hits that do not go with the rays or the scene are refused") {
-  const Scene scene = floor_scene();
-  const auto primary = gnomon::primary_rays(scene, 4, 3);
-  auto hits = nearest_hits(scene, primary);
-  CHECK_THROWS_AS(gnomon::bounce_rays(scene, primary, {hits.data(), 3}, 4, 1), gnomon::Error);
-  hits[2].primitive = 2;
-  CHECK_THROWS_WITH(gnomon::shadow_rays(scene, primary, hits, 4, 1), Catch::Contains("hit 2"));
-}
-
-TEST_CASE("shadow rays end just before a point light and never for the sun") {
-  Scene scene = floor_scene();
-  const auto primary = gnomon::primary_rays(scene, 100, 3);
-  const auto hits = nearest_hits(scene, primary);
-  scene.lights = {light_at(LightKind::kPoint, {1.0F, 3.0F, 0.0F})};
-  for (const Ray& ray : gnomon::shadow_rays(scene, primary, hits, 100, 1)) {
-    const Point to = Point{1.0, 3.0, 0.0} - to_point(ray.origin);
-    REQUIRE(glm::length(glm::normalize(to) - to_point(ray.direction)) < 1e-6);
-    REQUIRE(ray.tmax == Approx(0.9999 * glm::length(to)).epsilon(1e-6));
-  }
-  scene.lights = {light_at(LightKind::kDirectional, {})};
-  for (const Ray& ray : gnomon::shadow_rays(scene, primary, hits, 100, 1)) {
-    REQUIRE((ray.direction[1] == 1.0F && ray.tmax == kInfinity));
-  }
-}
-
-TEST_CASE("a scene without lights is lit by the default sun") {
-  const Scene scene = floor_scene();
-  const auto primary = gnomon::primary_rays(scene, 10, 3);
-  const auto rays = gnomon::shadow_rays(scene, primary, nearest_hits(scene, primary), 10, 1);
-  REQUIRE(rays.size() == 10);
-  for (const Ray& ray : rays) {
-    REQUIRE(glm::length(to_point(ray.direction) - glm::normalize(Point{0.4, 0.8, 0.45})) < 1e-6);
-  }
-}
-
-TEST_CASE("shadow rays to an area light spread over its triangles by area") {
-  Scene scene = floor_scene();
-  scene.triangles.push_back({{0, 3, 0}, {0, 3, 1}, {3, 3, 0}});
-  scene.triangles.push_back({{-1, 3, 0}, {-1, 3, 1}, {0, 3, 0}});
-  scene.material_ids = {0, 0, 0, 0};
-  Light light = light_at(LightKind::kArea, {0.5F, 3.0F, 0.4F});
-  light.triangles = {2, 3};
-  scene.lights = {light};
-  const auto primary = gnomon::primary_rays(scene, 4000, 3);
-  const auto rays = gnomon::shadow_rays(scene, primary, nearest_hits(floor_scene(), primary), 4000, 1);
-  REQUIRE(rays.size() == 4000);
-  double on_larger = 0.0;
-  for (const Ray& ray : rays) {
-    const Point end = to_point(ray.origin) + static_cast<double>(ray.tmax) / 0.9999 * to_point(ray.direction);
-    REQUIRE(end.y == Approx(3.0).epsilon(1e-5));
-    REQUIRE((end.x > -1.001 && end.x < 3.001 && end.z > -0.001 && end.z < 1.001));
-    on_larger += end.x > 0.0 ? 1.0 / 4000.0 : 0.0;
-  }
-  CHECK(on_larger == Approx(0.75).margin(0.03));
-}
-
-TEST_CASE("no shadow ray goes to a light that cannot reach the place") {
-  Scene scene = floor_scene();
-  const auto primary = gnomon::primary_rays(scene, 100, 3);
-  const auto hits = nearest_hits(scene, primary);
-  Light below = light_at(LightKind::kPoint, {0.0F, -1.0F, 0.0F});
-  Light near = light_at(LightKind::kPoint, {0.0F, 3.0F, 0.0F});
-  near.range = 1.0F;
-  Light narrow = light_at(LightKind::kSpot, {0.0F, 3.0F, 0.0F});
-  narrow.outer_cone = 0.1F;
-  for (const Light& light : {below, near}) {
-    scene.lights = {light};
-    REQUIRE(gnomon::shadow_rays(scene, primary, hits, 100, 1).empty());
-  }
-  scene.lights = {narrow};
-  const auto rays = gnomon::shadow_rays(scene, primary, hits, 100, 1);
-  CHECK((!rays.empty() && rays.size() < 50));
-  for (const Ray& ray : rays) CHECK(ray.direction[1] > std::cos(0.1F) - 1e-6F);
-  scene.lights = {below, near, light_at(LightKind::kPoint, {0.0F, 5.0F, 0.0F})};
-  CHECK(gnomon::shadow_rays(scene, primary, hits, 100, 1).size() == 100);
-}
-
-TEST_CASE("lights share the shadow rays") {
-  Scene scene = floor_scene();
-  for (const float x : {-1.0F, 0.0F, 1.0F}) scene.lights.push_back(light_at(LightKind::kPoint, {x, 50.0F, 0.0F}));
-  const auto primary = gnomon::primary_rays(scene, 900, 3);
-  std::vector<unsigned> rays_of(3);
-  for (const Ray& ray : gnomon::shadow_rays(scene, primary, nearest_hits(scene, primary), 900, 1)) {
-    const Point end = to_point(ray.origin) + static_cast<double>(ray.tmax) * to_point(ray.direction);
-    ++rays_of[static_cast<std::size_t>(std::lround(end.x) + 1)];
-  }
-  for (const unsigned count : rays_of) CHECK((count > 240 && count < 360));
-}
-
 TEST_CASE("ray files hold 32 bytes a ray and come back bit for bit") {
   const ScratchFolder folder("rays");
   const auto rays = gnomon::random_rays(floor_scene(), 33, 1);
@@ -356,7 +171,8 @@ TEST_CASE("ray files hold 32 bytes a ray and come back bit for bit") {
 TEST_CASE("a ray file of odd size, or none at all, is refused") {
   const ScratchFolder folder("odd-rays");
   std::ofstream(folder / "odd.rays") << std::string(33, 'x');
-  CHECK_THROWS_WITH(gnomon::read_rays(folder / "odd.rays"), Catch::Contains("33") && Catch::Contains("odd.rays"));
+  CHECK_THROWS_WITH(gnomon::read_rays(folder / "odd.rays"),
+                    Catch::Contains("33") && Catch::Contains("odd.rays"));
   CHECK_THROWS_AS(gnomon::read_rays(folder / "missing.rays"), gnomon::Error);
   CHECK_THROWS_AS(gnomon::write_rays(folder / "missing/a.rays", {}), gnomon::Error);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -17,8 +18,12 @@ namespace gnomon_test {
 
 using Point = glm::dvec3;
 
-inline Point to_point(const float* v) { return {v[0], v[1], v[2]}; }
-inline Point to_point(const gnomon::Vec3& v) { return {v[0], v[1], v[2]}; }
+inline Point to_point(const float* v) {
+  return {v[0], v[1], v[2]};
+}
+inline Point to_point(const gnomon::Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
 
 // Twice the area times the unit normal.
 inline Point area_vector(const gnomon::Triangle& t) {
@@ -42,13 +47,17 @@ inline gnomon::Hit nearest_hit(const gnomon::Scene& scene, const gnomon::Ray& ra
     const double u = glm::dot(s, p);
     const double v = glm::dot(direction, q);
     const double t = glm::dot(e2, q);
-    if (u < 0.0 || v < 0.0 || u + v > 1.0 || t < static_cast<double>(ray.tmin) || t >= static_cast<double>(best.t)) continue;
-    best = {static_cast<float>(t), static_cast<float>(u), static_cast<float>(v), static_cast<std::uint32_t>(i)};
+    if (u < 0.0 || v < 0.0 || u + v > 1.0 || t < static_cast<double>(ray.tmin) ||
+        t >= static_cast<double>(best.t))
+      continue;
+    best = {static_cast<float>(t), static_cast<float>(u), static_cast<float>(v),
+            static_cast<std::uint32_t>(i)};
   }
   return best;
 }
 
-inline std::vector<gnomon::Hit> nearest_hits(const gnomon::Scene& scene, const std::vector<gnomon::Ray>& rays) {
+inline std::vector<gnomon::Hit> nearest_hits(const gnomon::Scene& scene,
+                                             const std::vector<gnomon::Ray>& rays) {
   std::vector<gnomon::Hit> hits;
   for (const gnomon::Ray& ray : rays) hits.push_back(nearest_hit(scene, ray));
   return hits;
@@ -78,10 +87,32 @@ inline double clearance(const gnomon::Scene& scene, const Point& p) {
   return nearest;
 }
 
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+inline bool same_rays(const std::vector<gnomon::Ray>& a, const std::vector<gnomon::Ray>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(gnomon::Ray)) == 0;
+}
+
+// A square floor of side 4 at y = 0 under a camera at height 2 that looks straight down.
+inline gnomon::Scene floor_scene() {
+  gnomon::Scene scene;
+  scene.materials.resize(1);
+  scene.triangles = {{{-2, 0, 2}, {2, 0, 2}, {2, 0, -2}}, {{-2, 0, 2}, {2, 0, -2}, {-2, 0, -2}}};
+  scene.material_ids = {0, 0};
+  gnomon::Camera camera;
+  camera.position = {0.0F, 2.0F, 0.0F};
+  camera.forward = {0.0F, -1.0F, 0.0F};
+  camera.up = {0.0F, 0.0F, -1.0F};
+  camera.fov_y = 1.2F;
+  scene.cameras = {camera};
+  return scene;
+}
+
 // A folder of its own that is gone at the end of the test.
 class ScratchFolder {
  public:
-  explicit ScratchFolder(const std::string& name) : path_(std::filesystem::temp_directory_path() / ("gnomon-" + name)) {
+  explicit ScratchFolder(const std::string& name)
+      : path_(std::filesystem::temp_directory_path() / ("gnomon-" + name)) {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

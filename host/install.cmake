@@ -1,0 +1,39 @@
+# What `cmake --install` copies: library, public headers, program, and how CMake and pkg-config find them.
+include(CMakePackageConfigHelpers)
+
+# gnomon.h, what it includes, and the picture. Everything else in the rooms is the library's own business and may need
+# headers that users do not have. tests/consumer compiles each of these alone.
+set(public_headers
+  base/error.h base/progress.h
+  scene/scene.h scene/import.h scene/generators.h scene/gltf_export.h scene/ray_set.h
+  tree/build_options.h tree/bvh.h tree/bvh_check.h tree/build_reference.h tree/oracle.h
+  cl/opencl.h cl/check.h cl/handle.h cl/device.h cl/context.h cl/launch.h
+  device/build_device.h device/trace_device.h
+  render/picture.h render/render.h render/heat_map.h render/png.h)
+set(header_folder ${CMAKE_INSTALL_INCLUDEDIR}/gnomon)
+install(FILES gnomon.h DESTINATION ${header_folder})
+foreach(header ${public_headers})
+  get_filename_component(room ${header} DIRECTORY)
+  install(FILES ${header} DESTINATION ${header_folder}/${room})
+endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/kernels/shared/ DESTINATION ${header_folder}/shared FILES_MATCHING PATTERN "*.h")
+
+install(TARGETS gnomon EXPORT gnomon
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+if(TARGET gnomon_program)
+  install(TARGETS gnomon_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/gnomon)
+install(EXPORT gnomon NAMESPACE gnomon:: FILE gnomonTargets.cmake DESTINATION ${package_folder})
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/gnomonConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/gnomonConfig.cmake INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/gnomonConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/gnomonConfig.cmake ${PROJECT_BINARY_DIR}/gnomonConfigVersion.cmake
+  DESTINATION ${package_folder})
+
+# The .pc file finds its prefix from its own place, so that an installed tree may be moved.
+set(pc_folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+file(RELATIVE_PATH prefix_from_pc /prefix/${pc_folder} /prefix)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/gnomon.pc.in ${PROJECT_BINARY_DIR}/gnomon.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/gnomon.pc DESTINATION ${pc_folder})

@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# A machine without any OpenCL platform must not look healthy: the device tests fail, and say what to install.
+#   no_device.sh DEVICE_TEST
+set -euo pipefail
+export OCL_ICD_VENDORS=/nonexistent
+unset GNOMON_DEVICE
+if output=$("$1" "[portable]" -w NoTests 2>&1); then
+  echo "the device tests pass where there is no device:"
+  echo "$output"
+  exit 1
+fi
+grep -q "pocl-opencl-icd" <<<"$output" || { echo "no word of what to install:"; echo "$output"; exit 1; }

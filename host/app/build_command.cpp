@@ -65,7 +65,7 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
   CLI::App* const command =
       program.add_subcommand("build", "Build a bounding volume hierarchy on a device and time it.");
   add_scene_options(*command, options->scene);
-  add_count(*command, "--repeat", options->runs.repeat, "timed builds, after one to warm up")->check(CLI::PositiveNumber);
+  add_count(*command, "--repeat", options->runs.repeat, "timed builds, after one to warm up")->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);
   add_device_options(*command, options->device);
   add_output_options(*command, output);

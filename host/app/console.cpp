@@ -75,6 +75,7 @@ void Console::note(std::string_view text) {
 
 void Console::error(std::string_view text) {
   clear_line();
+  while (text.ends_with('\n')) text.remove_suffix(1);
   const std::string label = color_err_ ? painted(code_of(Paint::kBad), "error:") : "error:";
   std::fprintf(stderr, "gnomon: %s %.*s\n", label.c_str(), static_cast<int>(text.size()), text.data());
 }

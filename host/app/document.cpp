@@ -12,13 +12,14 @@ Json start_document(const std::string& command) {
 }
 
 void add_device(Json& document, const cl::DeviceInfo* device) {
-  for (const char* key : {"device", "driver", "platform", "opencl", "device_kind"}) document[key] = nullptr;
+  for (const char* key : {"device", "driver", "platform", "opencl", "device_kind", "device_index"}) document[key] = nullptr;
   if (device == nullptr) return;
   document["device"] = device->name;
   document["driver"] = device->driver;
   document["platform"] = device->platform_name;
   document["opencl"] = device->version;
   document["device_kind"] = kind_of(*device);
+  document["device_index"] = device->index;
 }
 
 void add_scene(Json& document, const SceneOptions& options, const Scene& scene) {

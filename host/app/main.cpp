@@ -71,7 +71,6 @@ int run(int argc, char** argv) {
   Action action;
   program.get_formatter()->column_width(36);
   program.set_version_flag("--version", "gnomon " + version() + " (" + commit() + ")");
-  program.require_subcommand(1);
   add_devices_command(program, output, action);
   add_scene_command(program, output, action);
   add_info_command(program, output, action);
@@ -85,6 +84,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return program.exit(error);  // help
     Console(output).error(std::string(error.what()) + "\n" + hint(program));
+    return kUsage;
+  }
+  if (!action) {
+    Console(output).error("which subcommand?\n" + hint(program));
     return kUsage;
   }
   catch_interrupts();

@@ -41,7 +41,7 @@ Outcome render_timed(const Options& options, const cl::Context& context, const T
   const auto start = std::chrono::steady_clock::now();
   outcome.result = render(context, build.tree, scene, options.render, progress);
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  outcome.exposure = auto_exposure(outcome.result.picture) * std::exp2(options.exposure);
+  outcome.exposure = auto_exposure(outcome.result.picture, outcome.result.coverage) * std::exp2(options.exposure);
   outcome.heat = heat_scale(outcome.result.boxes);
   return outcome;
 }

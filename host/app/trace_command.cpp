@@ -137,7 +137,7 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
   command->add_option("--query", options->query, "closest or any; default: any for shadow and parallel, else closest")
       ->check(CLI::IsMember({"closest", "any"}))
       ->type_name("Q");
-  add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")->check(CLI::PositiveNumber);
+  add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);
   add_device_options(*command, options->device);
   add_output_options(*command, output);

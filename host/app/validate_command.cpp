@@ -187,7 +187,7 @@ void add_validate_command(CLI::App& program, OutputOptions& output, Action& acti
   add_scene_options(*command, options->scene);
   add_count(*command, "--count", options->count, "rays of each kind to trace");
   add_count(*command, "--max-rays", options->max_rays, "of them, so many to judge, evenly spread")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1000000000));
   add_count(*command, "--seed", options->seed, "for the rays that are drawn at random");
   command->add_option("--budget", options->budget_seconds, "seconds the oracle may take in all")
       ->check(CLI::Range(1e-3, 1e6))

@@ -6,9 +6,9 @@
 namespace gnomon {
 namespace {
 
-const Point kHorizon{0.86, 0.93, 1.00};
-const Point kZenith{0.22, 0.42, 0.82};
-const Point kGround{0.58, 0.60, 0.62};
+const Point kHorizon{0.76, 0.87, 1.00};
+const Point kZenith{0.20, 0.43, 0.90};
+const Point kGround{0.56, 0.61, 0.66};
 const Point kBounced{0.14, 0.13, 0.12};
 constexpr double kHaze = 0.25;  // height over which ground turns into horizon
 

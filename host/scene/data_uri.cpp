@@ -27,7 +27,9 @@ int hex_value(char c) {
 
 }  // namespace
 
-bool is_data_uri(std::string_view uri) { return uri.substr(0, 5) == "data:"; }
+bool is_data_uri(std::string_view uri) {
+  return uri.substr(0, 5) == "data:";
+}
 
 std::vector<unsigned char> decode_data_uri(std::string_view uri, const std::string& place) {
   static constexpr std::array<unsigned char, 256> kValues = make_base64_values();

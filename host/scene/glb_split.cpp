@@ -53,7 +53,8 @@ GltfParts split_glb(std::span<const unsigned char> file) {
     at += kChunkHeaderBytes;
     if (length > glb.size() - at) cut_short("chunk " + std::to_string(chunk) + " reaches past its end");
     if ((chunk == 0) != (type == kJsonChunk)) {
-      bad_scene("this .glb must have exactly one JSON chunk, and it must come first" + std::string(kExportAgain));
+      bad_scene("this .glb must have exactly one JSON chunk, and it must come first" +
+                std::string(kExportAgain));
     }
     if (chunk == 0) parts.json = as_text(glb.subspan(at, length));
     // Only the second chunk may be BIN; others belong to extensions and are skipped.

@@ -14,7 +14,8 @@ static_assert(std::endian::native == std::endian::little, "glTF buffers are litt
 constexpr std::uint64_t kLargestElement = 128;  // a 4 x 4 matrix of doubles
 constexpr unsigned char kZeros[kLargestElement] = {};
 
-// An accessor without a buffer view claims zeros that no file size bounds. Real files use that for a few vertices.
+// An accessor without a buffer view claims zeros that no file size bounds. Real files use that for a few
+// vertices.
 constexpr std::uint64_t kMostImpliedElements = 1U << 22U;
 
 template <typename T>
@@ -37,9 +38,12 @@ glm::dvec3 load_vector(const unsigned char* at, double one) {
 
 std::uint32_t load_index(int component_type, const unsigned char* at) {
   switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return load<std::uint8_t>(at);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return load<std::uint16_t>(at);
-    default: return load<std::uint32_t>(at);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return load<std::uint8_t>(at);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return load<std::uint16_t>(at);
+    default:
+      return load<std::uint32_t>(at);
   }
 }
 
@@ -75,13 +79,16 @@ const unsigned char* AccessorView::element(std::uint64_t index) const {
 glm::dvec3 read_position(const AccessorView& view, std::uint64_t index) {
   const unsigned char* const at = view.element(index);
   switch (view.component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return load_vector<std::int8_t>(at, view.is_normalized ? 127.0 : 1.0);
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      return load_vector<std::int8_t>(at, view.is_normalized ? 127.0 : 1.0);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
       return load_vector<std::uint8_t>(at, view.is_normalized ? 255.0 : 1.0);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return load_vector<std::int16_t>(at, view.is_normalized ? 32767.0 : 1.0);
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      return load_vector<std::int16_t>(at, view.is_normalized ? 32767.0 : 1.0);
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
       return load_vector<std::uint16_t>(at, view.is_normalized ? 65535.0 : 1.0);
-    default: return load_vector<float>(at, 1.0);
+    default:
+      return load_vector<float>(at, 1.0);
   }
 }
 
@@ -105,7 +112,8 @@ const AccessorView& GltfAccessors::positions(int accessor, const std::string& pl
   const tinygltf::Accessor& source = find(accessor, place);
   const int type = source.componentType;
   const bool is_readable = type == TINYGLTF_COMPONENT_TYPE_FLOAT || type == TINYGLTF_COMPONENT_TYPE_BYTE ||
-                           type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_SHORT ||
+                           type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                           type == TINYGLTF_COMPONENT_TYPE_SHORT ||
                            type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
   if (source.type != TINYGLTF_TYPE_VEC3 || !is_readable) {
     bad_scene(place + ": POSITION (accessor " + std::to_string(accessor) +
@@ -132,15 +140,16 @@ const AccessorView& GltfAccessors::open(int accessor, const std::string& place) 
   view.count = source.count;
   view.component_type = source.componentType;
   view.is_normalized = source.normalized;
-  view.element_bytes = component_bytes(source.componentType, name) *
-                       static_cast<std::uint64_t>(
-                           tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(source.type)));
+  view.element_bytes =
+      component_bytes(source.componentType, name) *
+      static_cast<std::uint64_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(source.type)));
   if (source.bufferView >= 0) {
     const auto& views = document_.model.bufferViews;
     const auto index = static_cast<std::size_t>(source.bufferView);
     const std::uint64_t stated = index < views.size() ? views[index].byteStride : 0;
     view.stride = stated == 0 ? view.element_bytes : stated;
-    view.data = bytes_of(source.bufferView, source.byteOffset, view.count, view.element_bytes, view.stride, name);
+    view.data =
+        bytes_of(source.bufferView, source.byteOffset, view.count, view.element_bytes, view.stride, name);
   } else if (view.count > kMostImpliedElements) {
     bad_scene(name + " claims " + std::to_string(view.count) + " elements without any data, at most " +
               std::to_string(kMostImpliedElements) + " are accepted" + std::string(kExportAgain));
@@ -156,7 +165,8 @@ const unsigned char* GltfAccessors::bytes_of(int buffer_view, std::uint64_t offs
   const auto& views = document_.model.bufferViews;
   const std::string name = place + ", buffer view " + std::to_string(buffer_view);
   if (buffer_view < 0 || static_cast<std::size_t>(buffer_view) >= views.size()) {
-    bad_scene(name + " does not exist, there are " + std::to_string(views.size()) + std::string(kExportAgain));
+    bad_scene(name + " does not exist, there are " + std::to_string(views.size()) +
+              std::string(kExportAgain));
   }
   const tinygltf::BufferView& view = views[static_cast<std::size_t>(buffer_view)];
   if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= document_.buffers.size()) {
@@ -177,13 +187,14 @@ const unsigned char* GltfAccessors::bytes_of(int buffer_view, std::uint64_t offs
   const bool fits = count == 0 || (offset <= length && element_bytes <= length - offset &&
                                    count - 1 <= (length - offset - element_bytes) / stride);
   if (!fits) {
-    bad_scene(name + " has " + std::to_string(length) + " bytes, too few for " + range_text(offset, count, stride) +
-              std::string(kExportAgain));
+    bad_scene(name + " has " + std::to_string(length) + " bytes, too few for " +
+              range_text(offset, count, stride) + std::string(kExportAgain));
   }
   return count == 0 ? kZeros : buffer.data() + view.byteOffset + offset;
 }
 
-void GltfAccessors::open_sparse(const tinygltf::Accessor& source, AccessorView& view, const std::string& place) const {
+void GltfAccessors::open_sparse(const tinygltf::Accessor& source, AccessorView& view,
+                                const std::string& place) const {
   const auto& sparse = source.sparse;
   const auto count = static_cast<std::uint64_t>(sparse.count);
   const std::string name = place + ", sparse indices";
@@ -192,16 +203,18 @@ void GltfAccessors::open_sparse(const tinygltf::Accessor& source, AccessorView& 
   }
   const std::uint64_t index_bytes = component_bytes(sparse.indices.componentType, name);
   const unsigned char* const indices =
-      bytes_of(sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset), count, index_bytes,
-               index_bytes, name);
-  view.sparse_values = bytes_of(sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset), count,
-                                view.element_bytes, view.element_bytes, place + ", sparse values");
+      bytes_of(sparse.indices.bufferView, static_cast<std::uint64_t>(sparse.indices.byteOffset), count,
+               index_bytes, index_bytes, name);
+  view.sparse_values =
+      bytes_of(sparse.values.bufferView, static_cast<std::uint64_t>(sparse.values.byteOffset), count,
+               view.element_bytes, view.element_bytes, place + ", sparse values");
   view.sparse_elements.reserve(static_cast<std::size_t>(count));
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint32_t element = load_index(sparse.indices.componentType, indices + i * index_bytes);
     if (element >= view.count || (i > 0 && element <= view.sparse_elements.back())) {
       bad_scene(name + ": entry " + std::to_string(i) + " is " + std::to_string(element) +
-                ", they must ascend and stay below " + std::to_string(view.count) + std::string(kExportAgain));
+                ", they must ascend and stay below " + std::to_string(view.count) +
+                std::string(kExportAgain));
     }
     view.sparse_elements.push_back(element);
   }

@@ -1,6 +1,6 @@
-// Reading accessors element by element, every range checked once when one is opened: buffer views, strides, sparse
-// overrides, and zeros where there is no data. Not for copying them out: a file may share one huge accessor between
-// thousands of small primitives. Feeds gltf_mesh.
+// Reading accessors element by element, every range checked once when one is opened: buffer views, strides,
+// sparse overrides, and zeros where there is no data. Not for copying them out: a file may share one huge
+// accessor between thousands of small primitives. Feeds gltf_mesh.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,8 @@
 
 namespace gnomon {
 
-// An accessor whose reads are safe for every element below count. Elements it overrides come from sparse_values.
+// An accessor whose reads are safe for every element below count. Elements it overrides come from
+// sparse_values.
 struct AccessorView {
   const unsigned char* data = nullptr;  // null: zeros
   std::uint64_t stride = 0;

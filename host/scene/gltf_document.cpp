@@ -14,14 +14,15 @@ namespace gnomon {
 namespace {
 
 tinygltf::Model parse_model(const std::string& json) {
-  if (json.size() > std::numeric_limits<unsigned int>::max()) bad_scene("has more than 4 GiB of JSON; split it");
+  if (json.size() > std::numeric_limits<unsigned int>::max())
+    bad_scene("has more than 4 GiB of JSON; split it");
   tinygltf::TinyGLTF reader;
   tinygltf::Model model;
   std::string errors;
   std::string warnings;
   // tinygltf's warnings are about images and sizes, none of which it gets to see here.
-  if (!reader.LoadASCIIFromString(&model, &errors, &warnings, json.data(), static_cast<unsigned int>(json.size()),
-                                  "")) {
+  if (!reader.LoadASCIIFromString(&model, &errors, &warnings, json.data(),
+                                  static_cast<unsigned int>(json.size()), "")) {
     bad_scene("tinygltf cannot read it: " + errors);
   }
   return model;
@@ -30,8 +31,8 @@ tinygltf::Model parse_model(const std::string& json) {
 std::span<const unsigned char> require_bytes(std::span<const unsigned char> bytes, std::uint64_t wanted,
                                              const std::string& place) {
   if (bytes.size() < wanted) {
-    bad_scene(place + " should have " + std::to_string(wanted) + " bytes and has " + std::to_string(bytes.size()) +
-              "; the file is cut short: copy or export it again");
+    bad_scene(place + " should have " + std::to_string(wanted) + " bytes and has " +
+              std::to_string(bytes.size()) + "; the file is cut short: copy or export it again");
   }
   return bytes.first(static_cast<std::size_t>(wanted));
 }
@@ -42,15 +43,18 @@ std::vector<unsigned char> read_uri(const GltfBufferSource& source, const std::f
   const std::string& uri = *source.uri;
   if (is_data_uri(uri)) return decode_data_uri(uri, place);
   if (uri.find("://") != std::string::npos) {
-    bad_scene(place + " is at the address " + in_quotes(uri) + "; download it beside the .gltf and name the file");
+    bad_scene(place + " is at the address " + in_quotes(uri) +
+              "; download it beside the .gltf and name the file");
   }
   const std::string name = decode_percent(uri);  // UTF-8 by the specification
-  return read_file(base_folder / std::filesystem::path(std::u8string(name.begin(), name.end())), source.byte_length);
+  return read_file(base_folder / std::filesystem::path(std::u8string(name.begin(), name.end())),
+                   source.byte_length);
 }
 
 }  // namespace
 
-GltfDocument read_gltf_document(std::span<const unsigned char> file, const std::filesystem::path& base_folder) {
+GltfDocument read_gltf_document(std::span<const unsigned char> file,
+                                const std::filesystem::path& base_folder) {
   GltfDocument document;
   const GltfParts parts = split_gltf(file);
   const CheckedGltf checked = check_gltf_json(parts.json);

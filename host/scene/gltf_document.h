@@ -17,8 +17,9 @@ struct GltfDocument {
   std::vector<std::span<const unsigned char>> buffers;  // as the model's buffer views number them
 };
 
-// Checks the JSON, lets tinygltf read it and resolves every buffer: the GLB's own, data URIs and files relative to
-// `base_folder`. Throws Error: kIo for a buffer file that cannot be read, kBadScene for everything else.
+// Checks the JSON, lets tinygltf read it and resolves every buffer: the GLB's own, data URIs and files
+// relative to `base_folder`. Throws Error: kIo for a buffer file that cannot be read, kBadScene for
+// everything else.
 [[nodiscard]] GltfDocument read_gltf_document(std::span<const unsigned char> file,
                                               const std::filesystem::path& base_folder);
 

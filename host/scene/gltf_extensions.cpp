@@ -8,14 +8,17 @@
 namespace gnomon {
 namespace {
 
-bool starts_with(std::string_view text, std::string_view start) { return text.substr(0, start.size()) == start; }
+bool starts_with(std::string_view text, std::string_view start) {
+  return text.substr(0, start.size()) == start;
+}
 
 bool is_known(std::string_view name) {
   constexpr std::array<std::string_view, 2> kRead{"KHR_mesh_quantization", "KHR_lights_punctual"};
-  // Materials beyond colour, emission and roughness, texture formats and metadata leave every triangle in place.
-  constexpr std::array<std::string_view, 7> kHarmless{"KHR_materials_",        "KHR_texture_",    "EXT_texture_",
-                                                      "MSFT_texture_",         "KHR_xmp",         "ADOBE_materials_",
-                                                      "KHR_animation_pointer"};
+  // Materials beyond colour, emission and roughness, texture formats and metadata leave every triangle in
+  // place.
+  constexpr std::array<std::string_view, 7> kHarmless{
+      "KHR_materials_", "KHR_texture_",     "EXT_texture_",         "MSFT_texture_",
+      "KHR_xmp",        "ADOBE_materials_", "KHR_animation_pointer"};
   for (const std::string_view exact : kRead) {
     if (name == exact) return true;
   }

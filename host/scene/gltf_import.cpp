@@ -37,7 +37,8 @@ std::vector<PlacedMesh> plan_meshes(const GltfDocument& document, const std::vec
     if (node.skin >= 0) ++skinned;
   }
   if (skinned > 0) {
-    scene.report.notes.push_back("Skins are not read: " + std::to_string(skinned) + " nodes are in their rest pose.");
+    scene.report.notes.push_back("Skins are not read: " + std::to_string(skinned) +
+                                 " nodes are in their rest pose.");
   }
   scene.triangles.reserve(static_cast<std::size_t>(triangle_count));
   scene.material_ids.reserve(static_cast<std::size_t>(triangle_count));
@@ -84,8 +85,8 @@ Scene read_scene(std::span<const unsigned char> file, const std::filesystem::pat
 
 }  // namespace
 
-Scene import_gltf_bytes(const unsigned char* bytes, std::size_t size, const std::filesystem::path& base_folder,
-                        const ImportOptions& options) {
+Scene import_gltf_bytes(const unsigned char* bytes, std::size_t size,
+                        const std::filesystem::path& base_folder, const ImportOptions& options) {
   return run_import({}, [&] { return read_scene({bytes, size}, base_folder, options); });
 }
 

@@ -57,8 +57,10 @@ std::vector<GltfBufferSource> take_buffers(Json& root) {
 
 Json pick_view(Json& view, const std::string& place) {
   Json out = pick(view, place,
-                  {{"buffer", Kind::kIndex, true}, {"byteOffset", Kind::kSize},
-                   {"byteLength", Kind::kSize, true}, {"byteStride", Kind::kSize}});
+                  {{"buffer", Kind::kIndex, true},
+                   {"byteOffset", Kind::kSize},
+                   {"byteLength", Kind::kSize, true},
+                   {"byteStride", Kind::kSize}});
   const std::uint64_t stride = out.value("byteStride", std::uint64_t{0});
   if (stride % 4 != 0 || stride > 252) {
     bad_scene(place + ".byteStride must be a multiple of 4 up to 252" + std::string(kExportAgain));
@@ -75,18 +77,22 @@ Json pick_sparse(Json& sparse, const std::string& place) {
   }
   // Offsets are ints in tinygltf, so they must fit one.
   out["indices"] = pick(*indices, place + ".indices",
-                        {{"bufferView", Kind::kIndex, true}, {"byteOffset", Kind::kIndex},
+                        {{"bufferView", Kind::kIndex, true},
+                         {"byteOffset", Kind::kIndex},
                          {"componentType", Kind::kIndex, true}});
-  out["values"] = pick(*values, place + ".values",
-                       {{"bufferView", Kind::kIndex, true}, {"byteOffset", Kind::kIndex}});
+  out["values"] =
+      pick(*values, place + ".values", {{"bufferView", Kind::kIndex, true}, {"byteOffset", Kind::kIndex}});
   return out;
 }
 
 Json pick_accessor(Json& accessor, const std::string& place) {
   Json out = pick(accessor, place,
-                  {{"bufferView", Kind::kIndex}, {"byteOffset", Kind::kSize},
-                   {"componentType", Kind::kIndex, true}, {"normalized", Kind::kFlag},
-                   {"count", Kind::kSize, true}, {"type", Kind::kText, true}});
+                  {{"bufferView", Kind::kIndex},
+                   {"byteOffset", Kind::kSize},
+                   {"componentType", Kind::kIndex, true},
+                   {"normalized", Kind::kFlag},
+                   {"count", Kind::kSize, true},
+                   {"type", Kind::kText, true}});
   if (Json* const sparse = find_object(accessor, "sparse", place)) {
     out["sparse"] = pick_sparse(*sparse, place + ".sparse");
   }
@@ -110,7 +116,8 @@ void check_index_accessor(const Json& primitive, const Json& checked, const std:
 }
 
 Json pick_primitive(Json& primitive, const Json& checked, const std::string& place) {
-  Json out = pick(primitive, place, {{"indices", Kind::kIndex}, {"material", Kind::kIndex}, {"mode", Kind::kIndex}});
+  Json out =
+      pick(primitive, place, {{"indices", Kind::kIndex}, {"material", Kind::kIndex}, {"mode", Kind::kIndex}});
   Json* const attributes = find_object(primitive, "attributes", place);
   if (attributes == nullptr) bad_scene(place + ".attributes is missing" + std::string(kExportAgain));
   out["attributes"] = pick(*attributes, place + ".attributes", {{"POSITION", Kind::kIndex}});
@@ -122,20 +129,27 @@ Json pick_primitive(Json& primitive, const Json& checked, const std::string& pla
 
 Json pick_mesh(Json& mesh, const Json& checked, const std::string& place) {
   Json out = pick(mesh, place, {{"name", Kind::kText}, {"weights", Kind::kNumbers}});
-  out["primitives"] = pick_all(mesh, "primitives", place, [&checked](Json& primitive, const std::string& path) {
-    return pick_primitive(primitive, checked, path);
-  });
+  out["primitives"] =
+      pick_all(mesh, "primitives", place, [&checked](Json& primitive, const std::string& path) {
+        return pick_primitive(primitive, checked, path);
+      });
   return out;
 }
 
 Json pick_node(Json& node, const std::string& place) {
   Json out = pick(node, place,
-                  {{"name", Kind::kText}, {"children", Kind::kIndices}, {"mesh", Kind::kIndex},
-                   {"camera", Kind::kIndex}, {"skin", Kind::kIndex}, {"matrix", Kind::kNumbers, false, 16},
-                   {"translation", Kind::kNumbers, false, 3}, {"rotation", Kind::kNumbers, false, 4},
+                  {{"name", Kind::kText},
+                   {"children", Kind::kIndices},
+                   {"mesh", Kind::kIndex},
+                   {"camera", Kind::kIndex},
+                   {"skin", Kind::kIndex},
+                   {"matrix", Kind::kNumbers, false, 16},
+                   {"translation", Kind::kNumbers, false, 3},
+                   {"rotation", Kind::kNumbers, false, 4},
                    {"scale", Kind::kNumbers, false, 3}});
   if (Json* const light = find_extension(node, kLights, place)) {
-    out["extensions"][kLights] = pick(*light, place + ".extensions." + kLights, {{"light", Kind::kIndex, true}});
+    out["extensions"][kLights] =
+        pick(*light, place + ".extensions." + kLights, {{"light", Kind::kIndex, true}});
   }
   return out;
 }
@@ -152,7 +166,8 @@ Json pick_material(Json& material, const std::string& place) {
   if (Json* const pbr = find_object(material, "pbrMetallicRoughness", place)) {
     const std::string path = place + ".pbrMetallicRoughness";
     Json& picked = out["pbrMetallicRoughness"];
-    picked = pick(*pbr, path, {{"baseColorFactor", Kind::kNumbers, false, 4}, {"roughnessFactor", Kind::kNumber}});
+    picked =
+        pick(*pbr, path, {{"baseColorFactor", Kind::kNumbers, false, 4}, {"roughnessFactor", Kind::kNumber}});
     if (find_object(*pbr, "baseColorTexture", path) != nullptr) picked["baseColorTexture"] = some_texture;
   }
   if (Json* const strength = find_extension(material, kEmissiveStrength, place)) {
@@ -175,19 +190,23 @@ Json pick_camera(Json& camera, const std::string& place) {
     bad_scene(place + " must be \"perspective\" or \"orthographic\" and have a member of that name" +
               std::string(kExportAgain));
   }
-  out["perspective"] =
-      pick(*perspective, place + ".perspective", {{"yfov", Kind::kNumber, true}, {"aspectRatio", Kind::kNumber}});
+  out["perspective"] = pick(*perspective, place + ".perspective",
+                            {{"yfov", Kind::kNumber, true}, {"aspectRatio", Kind::kNumber}});
   out["perspective"]["znear"] = 0.01;  // never read here, but tinygltf insists on one
   return out;
 }
 
 Json pick_light(Json& light, const std::string& place) {
   Json out = pick(light, place,
-                  {{"type", Kind::kText, true}, {"name", Kind::kText}, {"color", Kind::kNumbers, false, 3},
-                   {"intensity", Kind::kNumber}, {"range", Kind::kNumber}});
+                  {{"type", Kind::kText, true},
+                   {"name", Kind::kText},
+                   {"color", Kind::kNumbers, false, 3},
+                   {"intensity", Kind::kNumber},
+                   {"range", Kind::kNumber}});
   Json* const spot = find_object(light, "spot", place);
   if (spot != nullptr) {
-    out["spot"] = pick(*spot, place + ".spot", {{"innerConeAngle", Kind::kNumber}, {"outerConeAngle", Kind::kNumber}});
+    out["spot"] =
+        pick(*spot, place + ".spot", {{"innerConeAngle", Kind::kNumber}, {"outerConeAngle", Kind::kNumber}});
   } else {
     out["spot"] = Json::object();  // tinygltf refuses a spot light without one; ours has default angles
   }

@@ -1,7 +1,7 @@
 // The JSON of a glTF file, checked before tinygltf sees it. tinygltf 2.7 wraps large integers, takes negative
-// offsets for zero, silently drops primitives it cannot read and fails on missing images; so only the members we
-// use are passed on, each of the right type and range. Not for whether indices and byte ranges make sense together
-// (gltf_accessor, gltf_nodes). Feeds gltf_document.
+// offsets for zero, silently drops primitives it cannot read and fails on missing images; so only the members
+// we use are passed on, each of the right type and range. Not for whether indices and byte ranges make sense
+// together (gltf_accessor, gltf_nodes). Feeds gltf_document.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@ struct GltfBufferSource {
 };
 
 struct CheckedGltf {
-  std::string text;  // glTF JSON for tinygltf, without buffers, images, textures, animations, skins and extras
+  std::string
+      text;  // glTF JSON for tinygltf, without buffers, images, textures, animations, skins and extras
   std::vector<GltfBufferSource> buffers;
 };
 

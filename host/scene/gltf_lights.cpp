@@ -58,7 +58,9 @@ std::size_t require_index(int index, std::size_t count, const std::string& place
   return static_cast<std::size_t>(index);
 }
 
-std::string either(const std::string& first, const std::string& second) { return first.empty() ? second : first; }
+std::string either(const std::string& first, const std::string& second) {
+  return first.empty() ? second : first;
+}
 
 // Fills what only one kind of light has. Throws for a type that KHR_lights_punctual does not define.
 void read_kind(const tinygltf::Light& source, const std::string& place, Light& light) {
@@ -72,7 +74,8 @@ void read_kind(const tinygltf::Light& source, const std::string& place, Light& l
     light.outer_cone = static_cast<float>(outer);
     light.inner_cone = static_cast<float>(std::clamp(source.spot.innerConeAngle, 0.0, outer));
   } else {
-    bad_scene(place + ": light type " + in_quotes(source.type) + " does not exist; use point, spot or directional");
+    bad_scene(place + ": light type " + in_quotes(source.type) +
+              " does not exist; use point, spot or directional");
   }
 }
 

@@ -10,7 +10,9 @@ namespace {
 
 constexpr double kMostRadiance = std::numeric_limits<float>::max();
 
-float clamped(double value, double most) { return static_cast<float>(std::clamp(value, 0.0, most)); }
+float clamped(double value, double most) {
+  return static_cast<float>(std::clamp(value, 0.0, most));
+}
 
 double emissive_strength(const tinygltf::Material& material) {
   const auto extension = material.extensions.find("KHR_materials_emissive_strength");
@@ -42,10 +44,12 @@ std::vector<Material> read_materials(const tinygltf::Model& model, std::vector<s
     materials.push_back(read_material(source));
     if (source.pbrMetallicRoughness.baseColorTexture.index >= 0) ++textured;
     const Vec3& emission = materials.back().emission;
-    if (source.emissiveTexture.index >= 0 && *std::max_element(emission.begin(), emission.end()) > 0.0F) ++glowing;
+    if (source.emissiveTexture.index >= 0 && *std::max_element(emission.begin(), emission.end()) > 0.0F)
+      ++glowing;
   }
   if (textured > 0) {
-    notes.push_back("Textures are not read: " + std::to_string(textured) + " materials have their plain color only.");
+    notes.push_back("Textures are not read: " + std::to_string(textured) +
+                    " materials have their plain color only.");
   }
   if (glowing > 0) {
     notes.push_back("Textures are not read: " + std::to_string(glowing) +

@@ -14,12 +14,14 @@
 namespace gnomon {
 
 // Every material of the file, in its order, values clamped to what they may be.
-[[nodiscard]] std::vector<Material> read_materials(const tinygltf::Model& model, std::vector<std::string>& notes);
+[[nodiscard]] std::vector<Material> read_materials(const tinygltf::Model& model,
+                                                   std::vector<std::string>& notes);
 
 // Numbers a primitive's material in the scene; the first one without gets a default material appended.
 class MaterialIds {
  public:
-  explicit MaterialIds(std::vector<Material>& materials) : materials_(materials), file_count_(materials.size()) {}
+  explicit MaterialIds(std::vector<Material>& materials)
+      : materials_(materials), file_count_(materials.size()) {}
 
   // `material` is -1 for none. Throws Error{kBadScene} for one that does not exist.
   [[nodiscard]] std::uint32_t of(int material, const std::string& place);

@@ -14,7 +14,9 @@ namespace {
 
 using Corners = std::array<std::uint64_t, 3>;
 
-bool is_points_or_lines(int mode) { return mode >= TINYGLTF_MODE_POINTS && mode <= TINYGLTF_MODE_LINE_STRIP; }
+bool is_points_or_lines(int mode) {
+  return mode >= TINYGLTF_MODE_POINTS && mode <= TINYGLTF_MODE_LINE_STRIP;
+}
 
 std::uint64_t count_triangles(int mode, std::uint64_t corner_count) {
   if (mode == TINYGLTF_MODE_TRIANGLES) return corner_count / 3;
@@ -99,7 +101,8 @@ const GltfMesh& GltfMeshes::open(int mesh, const std::string& place) {
     opened.triangle_count += primitive->triangle_count;
     opened.primitives.push_back(std::move(*primitive));
   }
-  const bool is_morphed = std::any_of(source.weights.begin(), source.weights.end(), [](double w) { return w != 0.0; });
+  const bool is_morphed =
+      std::any_of(source.weights.begin(), source.weights.end(), [](double w) { return w != 0.0; });
   if (is_morphed) {
     scene_.report.notes.push_back("Morph targets are not read: " + numbered("mesh", index, source.name) +
                                   " has its basic shape.");
@@ -108,7 +111,8 @@ const GltfMesh& GltfMeshes::open(int mesh, const std::string& place) {
   return *meshes_[index];
 }
 
-std::optional<GltfPrimitive> GltfMeshes::open_primitive(const tinygltf::Primitive& source, std::string place) {
+std::optional<GltfPrimitive> GltfMeshes::open_primitive(const tinygltf::Primitive& source,
+                                                        std::string place) {
   const auto attribute = source.attributes.find("POSITION");
   // The specification lets clients skip a primitive without positions.
   if (is_points_or_lines(source.mode) || attribute == source.attributes.end()) {
@@ -116,7 +120,8 @@ std::optional<GltfPrimitive> GltfMeshes::open_primitive(const tinygltf::Primitiv
     return std::nullopt;
   }
   if (source.mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-    bad_scene(place + ": mode " + std::to_string(source.mode) + " does not exist" + std::string(kExportAgain));
+    bad_scene(place + ": mode " + std::to_string(source.mode) + " does not exist" +
+              std::string(kExportAgain));
   }
   GltfPrimitive primitive;
   primitive.positions = &accessors_.positions(attribute->second, place);
@@ -137,8 +142,8 @@ std::optional<GltfPrimitive> GltfMeshes::open_primitive(const tinygltf::Primitiv
   return primitive;
 }
 
-std::vector<std::uint32_t> add_primitive(const GltfPrimitive& primitive, const glm::dmat4& world, bool wants_indices,
-                                         Scene& scene, TriangleSink& sink) {
+std::vector<std::uint32_t> add_primitive(const GltfPrimitive& primitive, const glm::dmat4& world,
+                                         bool wants_indices, Scene& scene, TriangleSink& sink) {
   std::vector<std::uint32_t> kept;
   const Placer placer(world);
   for (std::uint64_t t = 0; t < primitive.triangle_count; ++t) {

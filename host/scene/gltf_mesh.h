@@ -1,5 +1,5 @@
-// Turning glTF primitives into triangles. Not for where nodes stand (gltf_nodes) or reading bytes (gltf_accessor).
-// Feeds gltf_import.
+// Turning glTF primitives into triangles. Not for where nodes stand (gltf_nodes) or reading bytes
+// (gltf_accessor). Feeds gltf_import.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,8 @@ class GltfMeshes {
   [[nodiscard]] const GltfMesh& open(int mesh, const std::string& place);
 
  private:
-  [[nodiscard]] std::optional<GltfPrimitive> open_primitive(const tinygltf::Primitive& source, std::string place);
+  [[nodiscard]] std::optional<GltfPrimitive> open_primitive(const tinygltf::Primitive& source,
+                                                            std::string place);
 
   const GltfDocument& document_;
   Scene& scene_;
@@ -48,10 +49,10 @@ class GltfMeshes {
   std::vector<std::optional<GltfMesh>> meshes_;
 };
 
-// Appends a primitive's triangles, placed by `world`; a mirroring transform turns their winding so that faces stay
-// outwards. Gives the indices of those kept when `wants_indices`, for area lights.
-// Throws Error{kBadScene} for an index out of range, and as TriangleSink::add does.
-std::vector<std::uint32_t> add_primitive(const GltfPrimitive& primitive, const glm::dmat4& world, bool wants_indices,
-                                         Scene& scene, TriangleSink& sink);
+// Appends a primitive's triangles, placed by `world`; a mirroring transform turns their winding so that faces
+// stay outwards. Gives the indices of those kept when `wants_indices`, for area lights. Throws
+// Error{kBadScene} for an index out of range, and as TriangleSink::add does.
+std::vector<std::uint32_t> add_primitive(const GltfPrimitive& primitive, const glm::dmat4& world,
+                                         bool wants_indices, Scene& scene, TriangleSink& sink);
 
 }  // namespace gnomon

@@ -34,8 +34,9 @@ std::vector<std::size_t> find_parents(const tinygltf::Model& model) {
     for (const int child_index : model.nodes[node].children) {
       const std::size_t child = require_node(model, child_index, node_name(model, node));
       if (parents[child] != kNoParent) {
-        bad_scene(node_name(model, child) + " is listed as a child twice, by " + node_name(model, parents[child]) +
-                  " and " + node_name(model, node) + ": nodes must form a tree; export it again with copies");
+        bad_scene(node_name(model, child) + " is listed as a child twice, by " +
+                  node_name(model, parents[child]) + " and " + node_name(model, node) +
+                  ": nodes must form a tree; export it again with copies");
       }
       parents[child] = node;
     }
@@ -63,7 +64,8 @@ void require_no_cycle(const tinygltf::Model& model, const std::vector<std::size_
   while (is_reached[node]) ++node;
   // Climbing as often as there are nodes ends on the cycle itself.
   for (std::size_t step = 0; step < parents.size(); ++step) node = parents[node];
-  bad_scene(node_name(model, node) + " is its own ancestor: the nodes form a cycle" + std::string(kExportAgain));
+  bad_scene(node_name(model, node) + " is its own ancestor: the nodes form a cycle" +
+            std::string(kExportAgain));
 }
 
 std::vector<std::size_t> roots_of_scene(const tinygltf::Model& model, std::size_t scene,
@@ -74,8 +76,8 @@ std::vector<std::size_t> roots_of_scene(const tinygltf::Model& model, std::size_
   for (const int index : model.scenes[scene].nodes) {
     const std::size_t node = require_node(model, index, place);
     if (is_listed[node] || parents[node] != kNoParent) {
-      bad_scene(place + " lists " + node_name(model, node) + (is_listed[node] ? " twice" : ", which is no root node") +
-                std::string(kExportAgain));
+      bad_scene(place + " lists " + node_name(model, node) +
+                (is_listed[node] ? " twice" : ", which is no root node") + std::string(kExportAgain));
     }
     is_listed[node] = true;
     roots.push_back(node);
@@ -107,7 +109,8 @@ std::vector<std::size_t> find_roots(const tinygltf::Model& model, const std::vec
 glm::dmat4 matrix_of(const std::vector<double>& stated, const std::string& place) {
   glm::dmat4 matrix;
   for (int column = 0; column < 4; ++column) {
-    for (int row = 0; row < 4; ++row) matrix[column][row] = stated[static_cast<std::size_t>(column * 4 + row)];
+    for (int row = 0; row < 4; ++row)
+      matrix[column][row] = stated[static_cast<std::size_t>(column * 4 + row)];
   }
   for (int column = 0; column < 4; ++column) {
     const double affine = column == 3 ? 1.0 : 0.0;

@@ -33,7 +33,8 @@ std::string lower_extension(const std::filesystem::path& file) {
 
 Scene import_scene(const std::filesystem::path& file, const ImportOptions& options) {
   const auto head = read_file(file, kSniffedBytes);
-  if (looks_like_gltf({reinterpret_cast<const char*>(head.data()), head.size()})) return import_gltf(file, options);
+  if (looks_like_gltf({reinterpret_cast<const char*>(head.data()), head.size()}))
+    return import_gltf(file, options);
   const std::string extension = lower_extension(file);
   if (extension == ".obj") return import_obj(file, options);
   // Its content is not glTF; that importer knows best what is wrong with it.

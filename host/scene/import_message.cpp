@@ -11,7 +11,9 @@ constexpr std::size_t kLongestName = 60;
 
 }  // namespace
 
-void bad_scene(const std::string& message) { throw Error(ErrorCode::kBadScene, message); }
+void bad_scene(const std::string& message) {
+  throw Error(ErrorCode::kBadScene, message);
+}
 
 std::string in_quotes(std::string_view name) {
   std::size_t length = name.size();

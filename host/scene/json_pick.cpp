@@ -25,14 +25,20 @@ bool is_array_of(const Json& value, std::size_t length, const Accepts& accepts) 
 
 bool obeys(const Json& value, const JsonRule& rule) {
   switch (rule.kind) {
-    case JsonKind::kIndex: return is_whole(value, kMaxIndex);
-    case JsonKind::kSize: return is_whole(value, kMaxSize);
-    case JsonKind::kNumber: return value.is_number();
-    case JsonKind::kNumbers: return is_array_of(value, rule.length, [](const Json& v) { return v.is_number(); });
+    case JsonKind::kIndex:
+      return is_whole(value, kMaxIndex);
+    case JsonKind::kSize:
+      return is_whole(value, kMaxSize);
+    case JsonKind::kNumber:
+      return value.is_number();
+    case JsonKind::kNumbers:
+      return is_array_of(value, rule.length, [](const Json& v) { return v.is_number(); });
     case JsonKind::kIndices:
       return is_array_of(value, rule.length, [](const Json& v) { return is_whole(v, kMaxIndex); });
-    case JsonKind::kText: return value.is_string();
-    case JsonKind::kFlag: return value.is_boolean();
+    case JsonKind::kText:
+      return value.is_string();
+    case JsonKind::kFlag:
+      return value.is_boolean();
   }
   return false;
 }
@@ -40,13 +46,20 @@ bool obeys(const Json& value, const JsonRule& rule) {
 std::string wanted(const JsonRule& rule) {
   const std::string many = rule.length == 0 ? std::string() : std::to_string(rule.length) + ' ';
   switch (rule.kind) {
-    case JsonKind::kIndex: return "a whole number from 0 to 2147483647";
-    case JsonKind::kSize: return "a whole number from 0 to 2^53";
-    case JsonKind::kNumber: return "a number";
-    case JsonKind::kNumbers: return "an array of " + many + "numbers";
-    case JsonKind::kIndices: return "an array of whole numbers from 0 to 2147483647";
-    case JsonKind::kText: return "a text";
-    case JsonKind::kFlag: return "true or false";
+    case JsonKind::kIndex:
+      return "a whole number from 0 to 2147483647";
+    case JsonKind::kSize:
+      return "a whole number from 0 to 2^53";
+    case JsonKind::kNumber:
+      return "a number";
+    case JsonKind::kNumbers:
+      return "an array of " + many + "numbers";
+    case JsonKind::kIndices:
+      return "an array of whole numbers from 0 to 2147483647";
+    case JsonKind::kText:
+      return "a text";
+    case JsonKind::kFlag:
+      return "true or false";
   }
   return {};
 }
@@ -55,7 +68,8 @@ std::string member(const std::string& place, const char* key) {
   return place.empty() ? std::string(key) : place + '.' + key;
 }
 
-Json* find_typed(Json& source, const char* key, const std::string& place, Json::value_t type, const char* name) {
+Json* find_typed(Json& source, const char* key, const std::string& place, Json::value_t type,
+                 const char* name) {
   const auto found = source.find(key);
   if (found == source.end()) return nullptr;
   if (found->type() != type) {

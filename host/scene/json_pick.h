@@ -39,10 +39,11 @@ struct JsonRule {
 [[nodiscard]] Json* find_object(Json& source, const char* key, const std::string& place);
 [[nodiscard]] Json* find_array(Json& source, const char* key, const std::string& place);
 
-// Applies `pick_one(element, place)` to each object in the array `source[key]`; an array of the results, empty
-// when there is no such member.
+// Applies `pick_one(element, place)` to each object in the array `source[key]`; an array of the results,
+// empty when there is no such member.
 template <typename PickOne>
-[[nodiscard]] Json pick_all(Json& source, const char* key, const std::string& place, const PickOne& pick_one) {
+[[nodiscard]] Json pick_all(Json& source, const char* key, const std::string& place,
+                            const PickOne& pick_one) {
   Json out = Json::array();
   const std::string path = place.empty() ? std::string(key) : place + '.' + key;
   if (Json* const elements = find_array(source, key, place)) {

@@ -6,7 +6,9 @@ namespace gnomon {
 namespace {
 
 // Only data goes on after a backslash; a comment or a name that ends in one must not swallow the next line.
-bool may_continue(char keyword) { return keyword == 'f' || keyword == 'v' || keyword == 'l' || keyword == 'p'; }
+bool may_continue(char keyword) {
+  return keyword == 'f' || keyword == 'v' || keyword == 'l' || keyword == 'p';
+}
 
 }  // namespace
 
@@ -48,7 +50,8 @@ ObjLines::int_type ObjLines::underflow() {
   ++number_;
   for (; next_join_ < joins_.size() && joins_[next_join_] < begin_; ++next_join_) ++number_;
   const std::string_view trimmed = line().substr(std::min(line().find_first_not_of(" \t"), line().size()));
-  if (trimmed.size() > 1 && (trimmed[0] == 'l' || trimmed[0] == 'p') && (trimmed[1] == ' ' || trimmed[1] == '\t')) {
+  if (trimmed.size() > 1 && (trimmed[0] == 'l' || trimmed[0] == 'p') &&
+      (trimmed[1] == ' ' || trimmed[1] == '\t')) {
     ++skipped_;
   }
   setg(text_.data() + begin_, text_.data() + begin_, text_.data() + end_);
@@ -57,7 +60,8 @@ ObjLines::int_type ObjLines::underflow() {
 
 std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(" \t"); at != line.npos; at = line.find_first_not_of(" \t", at)) {
+  for (std::size_t at = line.find_first_not_of(" \t"); at != line.npos;
+       at = line.find_first_not_of(" \t", at)) {
     const std::size_t stop = std::min(line.find_first_of(" \t", at), line.size());
     words.push_back(line.substr(at, stop - at));
     at = stop;

@@ -1,5 +1,5 @@
-// The text of an OBJ file, handed to tinyobj line by line. Because tinyobj reads one line, then reports what it
-// found, we know at every report which line it is about. Not for interpreting lines. Feeds obj_import.
+// The text of an OBJ file, handed to tinyobj line by line. Because tinyobj reads one line, then reports what
+// it found, we know at every report which line it is about. Not for interpreting lines. Feeds obj_import.
 #pragma once
 
 #include <cstddef>

@@ -21,7 +21,9 @@ std::string rest_of(std::string_view line) {
   return {words[1].data(), last.data() + last.size()};
 }
 
-float clamped(float value, float most) { return std::isfinite(value) ? std::clamp(value, 0.0F, most) : 0.0F; }
+float clamped(float value, float most) {
+  return std::isfinite(value) ? std::clamp(value, 0.0F, most) : 0.0F;
+}
 
 }  // namespace
 

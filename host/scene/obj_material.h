@@ -15,14 +15,16 @@
 namespace gnomon {
 
 // tinyobj calls this for every mtllib line. A file that cannot be read becomes a note, never an error. Unlike
-// tinyobj's own reader it finds names with blanks in them, several names on a line and backslashes as separators.
+// tinyobj's own reader it finds names with blanks in them, several names on a line and backslashes as
+// separators.
 class ObjMaterialReader : public tinyobj::MaterialReader {
  public:
   ObjMaterialReader(const ObjLines& lines, std::filesystem::path base_folder, std::vector<std::string>& notes)
       : lines_(lines), base_folder_(std::move(base_folder)), notes_(notes) {}
 
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
-                  std::map<std::string, int>* material_map, std::string* warnings, std::string* errors) override;
+                  std::map<std::string, int>* material_map, std::string* warnings,
+                  std::string* errors) override;
 
  private:
   [[nodiscard]] bool read(const std::string& name, std::vector<tinyobj::material_t>* materials,

@@ -37,8 +37,8 @@ std::string trimmed(const char* text) {
   return {words.front().data(), words.back().data() + words.back().size()};
 }
 
-// A number, or NaN for the ways programs write NaN and infinity; nothing for other words. tinyobj would take all
-// of these for 0. A value too large or small for a float is what tinyobj made of it: infinity or 0.
+// A number, or NaN for the ways programs write NaN and infinity; nothing for other words. tinyobj would take
+// all of these for 0. A value too large or small for a float is what tinyobj made of it: infinity or 0.
 std::optional<float> read_number(std::string_view word, float from_tinyobj) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
   float value = 0.0F;
@@ -93,8 +93,10 @@ void ObjReader::add_vertex(float x, float y, float z) {
   const std::array<float, 3> from_tinyobj{x, y, z};
   Vec3 vertex{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto number = axis + 1 < words.size() ? read_number(words[axis + 1], from_tinyobj[axis]) : std::nullopt;
-    if (!number) bad_scene(here() + ": a vertex needs three numbers, and this says " + in_quotes(lines_.line()));
+    const auto number =
+        axis + 1 < words.size() ? read_number(words[axis + 1], from_tinyobj[axis]) : std::nullopt;
+    if (!number)
+      bad_scene(here() + ": a vertex needs three numbers, and this says " + in_quotes(lines_.line()));
     vertex[axis] = to_coordinate(static_cast<double>(*number));
   }
   vertices_.push_back(vertex);
@@ -105,8 +107,8 @@ std::uint32_t ObjReader::resolve(int index) const {
   const auto known = static_cast<std::int64_t>(vertices_.size());
   const std::int64_t vertex = index > 0 ? std::int64_t{index} - 1 : known + index;
   if (index == 0 || vertex < 0) {
-    bad_scene(here() + ": a face needs vertex numbers from 1 or back from -1 (there are " + std::to_string(known) +
-              " vertices so far), and this says " + in_quotes(lines_.line()));
+    bad_scene(here() + ": a face needs vertex numbers from 1 or back from -1 (there are " +
+              std::to_string(known) + " vertices so far), and this says " + in_quotes(lines_.line()));
   }
   return static_cast<std::uint32_t>(vertex);
 }
@@ -119,8 +121,8 @@ void ObjReader::add_face(const tinyobj::index_t* indices, int count) {
   const auto corner_count = static_cast<std::uint32_t>(count);
   require_room(triangle_count_, corner_count - 2, options_);
   triangle_count_ += corner_count - 2;
-  faces_.push_back({corners_.size(), corner_count, material_, static_cast<std::uint32_t>(shape_names_.size() - 1),
-                    lines_.number()});
+  faces_.push_back({corners_.size(), corner_count, material_,
+                    static_cast<std::uint32_t>(shape_names_.size() - 1), lines_.number()});
   for (int i = 0; i < count; ++i) corners_.push_back(resolve(indices[i].vertex_index));
 }
 
@@ -186,9 +188,11 @@ void ObjReader::emit(const ObjFace& face, TriangleSink& sink) {
   const std::uint32_t material_id = id_of(face.material_id);
   const bool glows = emits(scene_.materials[material_id]);
   const auto place = [&] {
-    return "line " + std::to_string(face.line) + ": a triangle of shape " + in_quotes(shape_names_[face.shape_id]);
+    return "line " + std::to_string(face.line) + ": a triangle of shape " +
+           in_quotes(shape_names_[face.shape_id]);
   };
-  const PolygonTriangles triangles = corners.size() == 3 ? PolygonTriangles{{0, 1, 2}} : split_polygon(corners);
+  const PolygonTriangles triangles =
+      corners.size() == 3 ? PolygonTriangles{{0, 1, 2}} : split_polygon(corners);
   for (const auto& [a, b, c] : triangles) {
     const Triangle triangle{{corners[a][0], corners[a][1], corners[a][2]},
                             {corners[b][0], corners[b][1], corners[b][2]},
@@ -217,14 +221,18 @@ Scene ObjReader::read(const std::filesystem::path& base_folder) {
   callbacks.index_cb = [](void* self, tinyobj::index_t* indices, int count) {
     static_cast<ObjReader*>(self)->add_face(indices, count);
   };
-  callbacks.usemtl_cb = [](void* self, const char* name, int) { static_cast<ObjReader*>(self)->use_material(name); };
+  callbacks.usemtl_cb = [](void* self, const char* name, int) {
+    static_cast<ObjReader*>(self)->use_material(name);
+  };
   callbacks.mtllib_cb = [](void* self, const tinyobj::material_t* materials, int count) {
     static_cast<ObjReader*>(self)->add_materials(materials, count);
   };
   callbacks.group_cb = [](void* self, const char** names, int count) {
     static_cast<ObjReader*>(self)->start_shape(count > 0 ? trimmed(names[0]) : std::string());
   };
-  callbacks.object_cb = [](void* self, const char* name) { static_cast<ObjReader*>(self)->start_shape(trimmed(name)); };
+  callbacks.object_cb = [](void* self, const char* name) {
+    static_cast<ObjReader*>(self)->start_shape(trimmed(name));
+  };
   std::istream stream(&lines_);
   ObjMaterialReader materials(lines_, base_folder, scene_.report.notes);
   tinyobj::LoadObjWithCallback(stream, callbacks, this, &materials);

@@ -67,12 +67,15 @@ bool is_inside(const Flat& p, const Flat& a, const Flat& b, const Flat& c) {
   return turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
 }
 
-bool same(const Flat& a, const Flat& b) { return a.x == b.x && a.y == b.y; }
+bool same(const Flat& a, const Flat& b) {
+  return a.x == b.x && a.y == b.y;
+}
 
 // What is left of a polygon while ears are cut off, as a ring of corner numbers.
 class Ring {
  public:
-  explicit Ring(const std::vector<Flat>& outline) : outline_(outline), next_(outline.size()), last_(outline.size()) {
+  explicit Ring(const std::vector<Flat>& outline)
+      : outline_(outline), next_(outline.size()), last_(outline.size()) {
     const auto count = static_cast<std::uint32_t>(outline.size());
     for (std::uint32_t i = 0; i < count; ++i) {
       next_[i] = (i + 1) % count;

@@ -14,9 +14,10 @@ namespace gnomon {
 // Corner numbers of triangles, three each.
 using PolygonTriangles = std::vector<std::array<std::uint32_t, 3>>;
 
-// Exactly corners.size() - 2 triangles, wound as the polygon (3 corners or more): a fan from the first corner when
-// it is strictly convex, else ears clipped in the plane of its mean normal. Where that finds no ear (the outline
-// crosses itself or is flat) or takes too long (thousands of corners in a nasty order), the rest becomes a fan.
+// Exactly corners.size() - 2 triangles, wound as the polygon (3 corners or more): a fan from the first corner
+// when it is strictly convex, else ears clipped in the plane of its mean normal. Where that finds no ear (the
+// outline crosses itself or is flat) or takes too long (thousands of corners in a nasty order), the rest
+// becomes a fan.
 [[nodiscard]] PolygonTriangles split_polygon(std::span<const Vec3> corners);
 
 }  // namespace gnomon

@@ -17,7 +17,8 @@ std::vector<unsigned char> make_room(const std::filesystem::path& file, std::uin
   try {
     return std::vector<unsigned char>(static_cast<std::size_t>(size));
   } catch (const std::exception&) {  // bad_alloc or length_error
-    throw Error(ErrorCode::kOutOfMemory, "no memory for the " + std::to_string(size) + " bytes of " + file.string());
+    throw Error(ErrorCode::kOutOfMemory,
+                "no memory for the " + std::to_string(size) + " bytes of " + file.string());
   }
 }
 
@@ -36,7 +37,8 @@ std::vector<unsigned char> read_file(const std::filesystem::path& file, std::uin
   if (!stream) cannot_read(file, "permission denied, or the file is in use");
   auto bytes = make_room(file, file_size < at_most ? file_size : at_most);
   stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (stream.gcount() != static_cast<std::streamsize>(bytes.size())) cannot_read(file, "reading stopped early");
+  if (stream.gcount() != static_cast<std::streamsize>(bytes.size()))
+    cannot_read(file, "reading stopped early");
   return bytes;
 }
 

@@ -1,5 +1,5 @@
-// Reading a regular file into memory. Not for devices and pipes: a scene that names one must not make us wait.
-// Feeds the importers.
+// Reading a regular file into memory. Not for devices and pipes: a scene that names one must not make us
+// wait. Feeds the importers.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,8 @@ namespace {
 
 bool in_range(const float v[3]) {
   // Written so that a NaN fails.
-  return std::abs(v[0]) <= kMaxCoordinate && std::abs(v[1]) <= kMaxCoordinate && std::abs(v[2]) <= kMaxCoordinate;
+  return std::abs(v[0]) <= kMaxCoordinate && std::abs(v[1]) <= kMaxCoordinate &&
+         std::abs(v[2]) <= kMaxCoordinate;
 }
 
 // True when a * b == c * d. Equal rounded products do not prove it: the rounding errors must agree as well.
@@ -34,7 +35,8 @@ bool has_zero_area(const Triangle& t) {
 }  // namespace
 
 TriangleFault fault_of(const Triangle& triangle) {
-  if (!in_range(triangle.v0) || !in_range(triangle.v1) || !in_range(triangle.v2)) return TriangleFault::kNotFinite;
+  if (!in_range(triangle.v0) || !in_range(triangle.v1) || !in_range(triangle.v2))
+    return TriangleFault::kNotFinite;
   return has_zero_area(triangle) ? TriangleFault::kZeroArea : TriangleFault::kNone;
 }
 

@@ -1,5 +1,5 @@
-// Which triangles can be traced and what happens to the others: one policy for every importer. Not for repairing
-// them. Feeds the importers.
+// Which triangles can be traced and what happens to the others: one policy for every importer. Not for
+// repairing them. Feeds the importers.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,9 @@ enum class TriangleFault {
   kZeroArea,   // three corners equal or on one line
 };
 
-// Slivers are fine: only a cross product that is zero counts as zero area. It is taken in double precision, where
-// products of nearby floats' differences are exact, and checked again without rounding where it comes out zero.
+// Slivers are fine: only a cross product that is zero counts as zero area. It is taken in double precision,
+// where products of nearby floats' differences are exact, and checked again without rounding where it comes
+// out zero.
 [[nodiscard]] TriangleFault fault_of(const Triangle& triangle);
 
 // Appends valid triangles to a scene and applies the InvalidPolicy to the others.
@@ -26,8 +27,8 @@ class TriangleSink {
  public:
   TriangleSink(Scene& scene, InvalidPolicy policy) : scene_(scene), policy_(policy) {}
 
-  // True when the triangle was kept: it is then the scene's last. `place()` gives the text that names it and is
-  // called only for the error. Throws Error{kBadScene} for a faulty triangle under InvalidPolicy::kReject.
+  // True when the triangle was kept: it is then the scene's last. `place()` gives the text that names it and
+  // is called only for the error. Throws Error{kBadScene} for a faulty triangle under InvalidPolicy::kReject.
   template <typename Place>
   bool add(const Triangle& triangle, std::uint32_t material_id, const Place& place) {
     const TriangleFault fault = fault_of(triangle);

@@ -42,8 +42,9 @@ void write_file(const std::filesystem::path& file, std::span<const std::byte> by
   Temporary temporary(file);
   std::FILE* const stream = std::fopen(temporary.path().c_str(), "wb");
   if (stream == nullptr) fail(file, errno);
-  const bool written =
-      std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size() && std::fflush(stream) == 0;
+  // fwrite may not be handed the null pointer that an empty span has.
+  const bool taken = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
+  const bool written = taken && std::fflush(stream) == 0;
   const int reason = written ? 0 : errno;
   const bool closed = std::fclose(stream) == 0;
   if (!written || !closed) fail(file, written ? errno : reason);

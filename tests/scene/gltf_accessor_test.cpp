@@ -34,8 +34,11 @@ Triangle quantized(const std::vector<T>& values, int type, bool is_normalized) {
   builder.json["extensionsRequired"] = {"KHR_mesh_quantization"};
   // Padded to a stride of a multiple of four, as the extension demands.
   const int stride = sizeof(T) == 1 ? 4 : 8;
-  const Json accessor = {{"bufferView", builder.add_view(values, stride)}, {"componentType", type},
-                         {"normalized", is_normalized}, {"count", 3}, {"type", "VEC3"}};
+  const Json accessor = {{"bufferView", builder.add_view(values, stride)},
+                         {"componentType", type},
+                         {"normalized", is_normalized},
+                         {"count", 3},
+                         {"type", "VEC3"}};
   return load(with_positions(builder, accessor)).triangles.at(0);
 }
 
@@ -64,13 +67,16 @@ TEST_CASE("KHR_mesh_quantization: integers are plain numbers unless normalized")
   CHECK(bytes.v1[1] == -1);
   CHECK(bytes.v1[2] == -1);
   CHECK(bytes.v2[1] == static_cast<float>(1.0 / 127.0));
-  const Triangle ubytes = quantized<std::uint8_t>({0, 0, 0, 0, 255, 0, 51, 0, 0, 255, 0, 0}, kUnsignedByte, true);
+  const Triangle ubytes =
+      quantized<std::uint8_t>({0, 0, 0, 0, 255, 0, 51, 0, 0, 255, 0, 0}, kUnsignedByte, true);
   CHECK(ubytes.v1[0] == 1);
   CHECK(ubytes.v1[2] == 0.2F);
-  const Triangle ushorts = quantized<std::uint16_t>({0, 0, 0, 0, 65535, 0, 0, 0, 0, 13107, 0, 0}, kUnsignedShort, true);
+  const Triangle ushorts =
+      quantized<std::uint16_t>({0, 0, 0, 0, 65535, 0, 0, 0, 0, 13107, 0, 0}, kUnsignedShort, true);
   CHECK(ushorts.v1[0] == 1);
   CHECK(ushorts.v2[1] == 0.2F);
-  const Triangle shorts = quantized<std::int16_t>({0, 0, 0, 0, 32767, -32768, 0, 0, 0, 1, 0, 0}, kShort, true);
+  const Triangle shorts =
+      quantized<std::int16_t>({0, 0, 0, 0, 32767, -32768, 0, 0, 0, 1, 0, 0}, kShort, true);
   CHECK(shorts.v1[0] == 1);
   CHECK(shorts.v1[1] == -1);
 }
@@ -79,9 +85,10 @@ TEST_CASE("a sparse accessor overrides some elements of its buffer view") {
   GltfBuilder builder = one_triangle();
   const int indices = builder.add_view(std::vector<std::uint8_t>{0, 2});
   const int values = builder.add_view(std::vector<float>{5, 5, 5, 0, 7, 0});
-  builder.json["accessors"][0]["sparse"] = {{"count", 2},
-                                            {"indices", {{"bufferView", indices}, {"componentType", kUnsignedByte}}},
-                                            {"values", {{"bufferView", values}}}};
+  builder.json["accessors"][0]["sparse"] = {
+      {"count", 2},
+      {"indices", {{"bufferView", indices}, {"componentType", kUnsignedByte}}},
+      {"values", {{"bufferView", values}}}};
   const Triangle t = load(builder).triangles.at(0);
   CHECK(t.v0[0] == 5);
   CHECK(t.v1[0] == 1);
@@ -92,14 +99,14 @@ TEST_CASE("a sparse accessor without a buffer view overrides zeros") {
   GltfBuilder builder;
   const int indices = builder.add_view(std::vector<std::uint16_t>{1, 2});
   const int values = builder.add_view(std::vector<float>{1, 0, 0, 0, 1, 0});
-  const Scene scene = load(with_positions(
-      builder, {{"componentType", kFloat},
-                {"count", 3},
-                {"type", "VEC3"},
-                {"sparse",
-                 {{"count", 2},
-                  {"indices", {{"bufferView", indices}, {"componentType", kUnsignedShort}}},
-                  {"values", {{"bufferView", values}}}}}}));
+  const Scene scene = load(
+      with_positions(builder, {{"componentType", kFloat},
+                               {"count", 3},
+                               {"type", "VEC3"},
+                               {"sparse",
+                                {{"count", 2},
+                                 {"indices", {{"bufferView", indices}, {"componentType", kUnsignedShort}}},
+                                 {"values", {{"bufferView", values}}}}}}));
   const Triangle& t = scene.triangles.at(0);
   CHECK(t.v0[0] == 0);
   CHECK(t.v1[0] == 1);
@@ -110,16 +117,16 @@ TEST_CASE("sparse indices apply to index accessors as well") {
   GltfBuilder builder = indexed();
   builder.json["accessors"][1]["sparse"] = {
       {"count", 1},
-      {"indices", {{"bufferView", builder.add_view(std::vector<std::uint32_t>{0})}, {"componentType", kUnsignedInt}}},
+      {"indices",
+       {{"bufferView", builder.add_view(std::vector<std::uint32_t>{0})}, {"componentType", kUnsignedInt}}},
       {"values", {{"bufferView", builder.add_view(std::vector<std::uint16_t>{2})}}}};
   CHECK_THAT(load_error(builder), Contains("1 triangles of zero area"));  // 2 1 2
 }
 
 TEST_CASE("an accessor without data is zeros: its triangles have no area") {
-  const GltfBuilder builder =
-      with_positions({}, {{"componentType", kFloat}, {"count", 6}, {"type", "VEC3"}});
-  CHECK_THAT(load_error(builder), StartsWith("kBadScene: contains no triangles") &&
-                                      Contains("2 triangles of zero area"));
+  const GltfBuilder builder = with_positions({}, {{"componentType", kFloat}, {"count", 6}, {"type", "VEC3"}});
+  CHECK_THAT(load_error(builder),
+             StartsWith("kBadScene: contains no triangles") && Contains("2 triangles of zero area"));
 }
 
 TEST_CASE("four thousand million vertices without data are refused, not made") {
@@ -142,8 +149,9 @@ TEST_CASE("a range that leaves its buffer is an error that names it") {
   GltfBuilder builder = indexed();
   SECTION("a view longer than its buffer") {
     builder.json["bufferViews"][0]["byteLength"] = 1000;
-    CHECK_THAT(load_error(builder),
-               Contains(kPlace) && Contains("accessor 0, buffer view 0 reaches past buffer 0, which has 42 bytes"));
+    CHECK_THAT(
+        load_error(builder),
+        Contains(kPlace) && Contains("accessor 0, buffer view 0 reaches past buffer 0, which has 42 bytes"));
   }
   SECTION("an offset past the buffer, close to overflow") {
     builder.json["bufferViews"][0]["byteOffset"] = (1ULL << 53U) - 4;
@@ -151,7 +159,8 @@ TEST_CASE("a range that leaves its buffer is an error that names it") {
   }
   SECTION("an accessor longer than its view") {
     builder.json["accessors"][0]["count"] = 4;
-    CHECK_THAT(load_error(builder), Contains(kPlace) && Contains("accessor 0, buffer view 0 has 36 bytes, too few"));
+    CHECK_THAT(load_error(builder),
+               Contains(kPlace) && Contains("accessor 0, buffer view 0 has 36 bytes, too few"));
   }
   SECTION("an accessor so long that its size would overflow") {
     builder.json["accessors"][0]["count"] = 1ULL << 53U;
@@ -193,11 +202,13 @@ TEST_CASE("an index that names nothing is an error that names it") {
   }
   SECTION("index accessor") {
     builder.primitive()["indices"] = 2;
-    CHECK_THAT(load_error(builder), Contains("meshes[0].primitives[0].indices names accessor 2 and there are 2"));
+    CHECK_THAT(load_error(builder),
+               Contains("meshes[0].primitives[0].indices names accessor 2 and there are 2"));
   }
   SECTION("buffer view of positions") {
     builder.json["accessors"][0]["bufferView"] = 5;
-    CHECK_THAT(load_error(builder), Contains(kPlace) && Contains("buffer view 5 does not exist, there are 2"));
+    CHECK_THAT(load_error(builder),
+               Contains(kPlace) && Contains("buffer view 5 does not exist, there are 2"));
   }
   SECTION("buffer view of indices") {
     builder.json["accessors"][1]["bufferView"] = 5;
@@ -221,7 +232,8 @@ TEST_CASE("a wrong component type or shape is an error that names it") {
   GltfBuilder builder = indexed();
   SECTION("positions of 32 bit integers") {
     builder.json["accessors"][0]["componentType"] = kUnsignedInt;
-    CHECK_THAT(load_error(builder), Contains(kPlace) && Contains("POSITION (accessor 0) must be VEC3 of floats"));
+    CHECK_THAT(load_error(builder),
+               Contains(kPlace) && Contains("POSITION (accessor 0) must be VEC3 of floats"));
   }
   SECTION("positions of two numbers") {
     builder.json["accessors"][0]["type"] = "VEC2";
@@ -255,36 +267,4 @@ TEST_CASE("sparse entries out of order or range are an error that names them") {
   CHECK_THAT(sparse({0, 1, 2}, kUnsignedByte), Contains("sparse values, buffer view") && Contains("too few"));
   CHECK_THAT(sparse({0, 1}, kUnsignedInt), Contains("sparse indices, buffer view") && Contains("too few"));
   CHECK_THAT(sparse({0, 1}, kFloat), Contains("sparse indices must be unsigned"));
-}
-
-TEST_CASE("vertices that are no usable numbers are dropped and counted, or rejected by name") {
-  const float bad = GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 3e14F);
-  GltfBuilder builder;
-  const int positions = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, bad, 0, 0, 1, 0});
-  builder.add_mesh({{"attributes", {{"POSITION", positions}}}});
-  const Scene scene = load(builder);
-  CHECK(scene.triangles.size() == 1);
-  CHECK(scene.report.non_finite_dropped == 1);
-  CHECK(scene.report.zero_area_dropped == 0);
-  CHECK_THAT(load_error(builder, kReject), StartsWith("kBadScene: mesh 0 \"Body\", primitive 0, triangle 1") &&
-                                               Contains("not a number, infinite or beyond 2^48"));
-}
-
-TEST_CASE("triangles without area are dropped and counted, or rejected by name; slivers stay") {
-  GltfBuilder builder;
-  // Equal corners; corners on one line; and a sliver one rounding step away from that line.
-  const int positions = builder.add_positions({1, 2, 3, 1, 2, 3, 4, 5, 6,           //
-                                               0, 0, 0, 0.1F, 0.2F, 0.3F, 0.2F, 0.4F, 0.6F,  //
-                                               0, 0, 0, 1, 1, 1, 2, 2, 2.0000002F});
-  builder.add_mesh({{"attributes", {{"POSITION", positions}}}});
-  const Scene scene = load(builder);
-  CHECK(scene.triangles.size() == 1);
-  CHECK(scene.report.zero_area_dropped == 2);
-  CHECK_THAT(load_error(builder, kReject), Contains(", triangle 0 has no area"));
-}
-
-TEST_CASE("a transform that pushes vertices out of range makes them invalid") {
-  GltfBuilder builder = one_triangle();
-  builder.json["nodes"][0]["scale"] = {1e300, 1e300, 1};
-  CHECK_THAT(load_error(builder), Contains("1 triangles with coordinates that are no usable numbers"));
 }

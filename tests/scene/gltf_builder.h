@@ -1,5 +1,5 @@
-// Small glTF documents for tests, made in memory: JSON to change at will and a binary part that grows by arrays.
-// Not for anything a real exporter should do. Feeds the importer's tests and its fuzz test.
+// Small glTF documents for tests, made in memory: JSON to change at will and a binary part that grows by
+// arrays. Not for anything a real exporter should do. Feeds the importer's tests and its fuzz test.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,8 @@ inline std::string base64(const Bytes& bytes) {
   return text;
 }
 
-// Without its buffer a document starts as {"asset": {"version": "2.0"}}; buffer 0 is added when it is written.
+// Without its buffer a document starts as {"asset": {"version": "2.0"}}; buffer 0 is added when it is
+// written.
 struct GltfBuilder {
   Json json = {{"asset", {{"version", "2.0"}}}};
   Bytes binary;
@@ -61,15 +62,19 @@ struct GltfBuilder {
   }
 
   int add_positions(const std::vector<float>& xyz) {
-    return add_accessor(
-        {{"bufferView", add_view(xyz)}, {"componentType", kFloat}, {"count", xyz.size() / 3}, {"type", "VEC3"}});
+    return add_accessor({{"bufferView", add_view(xyz)},
+                         {"componentType", kFloat},
+                         {"count", xyz.size() / 3},
+                         {"type", "VEC3"}});
   }
 
   template <typename T>
   int add_indices(const std::vector<T>& indices) {
     constexpr int kType = sizeof(T) == 1 ? kUnsignedByte : sizeof(T) == 2 ? kUnsignedShort : kUnsignedInt;
-    return add_accessor(
-        {{"bufferView", add_view(indices)}, {"componentType", kType}, {"count", indices.size()}, {"type", "SCALAR"}});
+    return add_accessor({{"bufferView", add_view(indices)},
+                         {"componentType", kType},
+                         {"count", indices.size()},
+                         {"type", "SCALAR"}});
   }
 
   // A mesh of one primitive, and a node that shows it.
@@ -85,7 +90,8 @@ struct GltfBuilder {
   [[nodiscard]] std::string text() const {
     Json whole = json;
     if (!binary.empty() && !whole.contains("buffers")) {
-      whole["buffers"] = {{{"byteLength", binary.size()}, {"uri", "data:application/octet-stream;base64," + base64(binary)}}};
+      whole["buffers"] = {
+          {{"byteLength", binary.size()}, {"uri", "data:application/octet-stream;base64," + base64(binary)}}};
     }
     return whole.dump();
   }
@@ -99,7 +105,8 @@ struct GltfBuilder {
     while (padded.size() % 4 != 0) padded.push_back(0);
     Bytes file;
     const auto put = [&file](std::size_t value) {
-      for (unsigned shift = 0; shift < 32; shift += 8) file.push_back(static_cast<unsigned char>(value >> shift));
+      for (unsigned shift = 0; shift < 32; shift += 8)
+        file.push_back(static_cast<unsigned char>(value >> shift));
     };
     put(0x46546C67);
     put(2);
@@ -124,7 +131,8 @@ inline GltfBuilder one_triangle() {
 }
 
 inline gnomon::Scene load(const std::string& text, const gnomon::ImportOptions& options = {}) {
-  return gnomon::import_gltf_bytes(reinterpret_cast<const unsigned char*>(text.data()), text.size(), {}, options);
+  return gnomon::import_gltf_bytes(reinterpret_cast<const unsigned char*>(text.data()), text.size(), {},
+                                   options);
 }
 inline gnomon::Scene load(const Bytes& glb, const gnomon::ImportOptions& options = {}) {
   return gnomon::import_gltf_bytes(glb.data(), glb.size(), {}, options);
@@ -139,10 +147,11 @@ std::string error_of(const Action& action) {
   try {
     action();
   } catch (const gnomon::Error& error) {
-    const bool is_known = error.code() == gnomon::ErrorCode::kIo || error.code() == gnomon::ErrorCode::kBadScene;
-    const char* const code = !is_known                                       ? "other: "
+    const bool is_known =
+        error.code() == gnomon::ErrorCode::kIo || error.code() == gnomon::ErrorCode::kBadScene;
+    const char* const code = !is_known                                ? "other: "
                              : error.code() == gnomon::ErrorCode::kIo ? "kIo: "
-                                                                             : "kBadScene: ";
+                                                                      : "kBadScene: ";
     return std::string(code) + error.what();
   }
   return "no error";

@@ -33,7 +33,8 @@ TEST_CASE("a node with two parents is an error that names all three") {
   GltfBuilder builder = one_triangle();
   builder.json["nodes"].push_back({{"children", {0}}, {"name", "Left"}});
   builder.json["nodes"].push_back({{"children", {0}}, {"name", "Right"}});
-  CHECK_THAT(load_error(builder), Contains("node 0 is listed as a child twice, by node 1 \"Left\" and node 2 \"Right\""));
+  CHECK_THAT(load_error(builder),
+             Contains("node 0 is listed as a child twice, by node 1 \"Left\" and node 2 \"Right\""));
 }
 
 TEST_CASE("node and scene indices that do not exist are errors that name their place") {
@@ -82,7 +83,8 @@ TEST_CASE("members of the wrong type or range are errors that name their path") 
   GltfBuilder builder = one_triangle();
   SECTION("a negative offset, which tinygltf would read as zero") {
     builder.json["accessors"][0]["byteOffset"] = -4;
-    CHECK_THAT(load_error(builder), Contains("accessors[0].byteOffset must be a whole number from 0 to 2^53"));
+    CHECK_THAT(load_error(builder),
+               Contains("accessors[0].byteOffset must be a whole number from 0 to 2^53"));
   }
   SECTION("an index that would wrap to zero in 32 bits") {
     builder.json["nodes"][0]["mesh"] = 1ULL << 32U;
@@ -118,7 +120,8 @@ TEST_CASE("a document of another kind or version says so") {
   GltfBuilder builder = one_triangle();
   builder.json["asset"]["version"] = "1.0";
   CHECK_THAT(load_error(builder), Contains("glTF version \"1.0\"; export it as glTF 2.0"));
-  CHECK_THAT(error_of([] { return load(std::string("{\"a\": 1}")); }), Contains("it has no \"asset\" object"));
+  CHECK_THAT(error_of([] { return load(std::string("{\"a\": 1}")); }),
+             Contains("it has no \"asset\" object"));
   CHECK_THAT(error_of([] { return load(std::string("[1, 2]")); }), Contains("it is no JSON object"));
   CHECK_THAT(error_of([] { return load(std::string("{\"asset\": ")); }),
              StartsWith("kBadScene: is neither glTF nor GLB: parse error at line 1"));
@@ -178,7 +181,8 @@ TEST_CASE("a buffer without uri needs the GLB's binary part") {
   builder.json["buffers"] = {{{"byteLength", 36}}};
   CHECK_THAT(load_error(builder), Contains("buffer 0 has no uri and the file no binary part for it"));
   builder.json["buffers"][0]["uri"] = "https://example.org/mesh.bin";
-  CHECK_THAT(load_error(builder), Contains("buffer 0 is at the address \"https://example.org/mesh.bin\"; download it"));
+  CHECK_THAT(load_error(builder),
+             Contains("buffer 0 is at the address \"https://example.org/mesh.bin\"; download it"));
 }
 
 TEST_CASE("a required extension that is not supported is named, with a remedy") {
@@ -192,9 +196,11 @@ TEST_CASE("a required extension that is not supported is named, with a remedy") 
                  Contains("gltf-transform cp"));
   CHECK_THAT(required("EXT_meshopt_compression"), Contains("gltf-transform cp"));
   CHECK_THAT(required("EXT_mesh_gpu_instancing"), Contains("one node per instance"));
-  CHECK_THAT(required("ACME_geometry"), Contains("\"ACME_geometry\"") && EndsWith("export it without this extension"));
-  for (const char* const name : {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_texture_transform",
-                                 "KHR_materials_unlit", "EXT_texture_webp", "KHR_texture_basisu"}) {
+  CHECK_THAT(required("ACME_geometry"),
+             Contains("\"ACME_geometry\"") && EndsWith("export it without this extension"));
+  for (const char* const name :
+       {"KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_texture_transform",
+        "KHR_materials_unlit", "EXT_texture_webp", "KHR_texture_basisu"}) {
     INFO(name);
     CHECK(required(name) == "no error");
   }
@@ -204,7 +210,8 @@ TEST_CASE("a required extension that is not supported is named, with a remedy") 
 
 TEST_CASE("geometry that only Draco has is an error even where Draco is not required") {
   GltfBuilder builder = one_triangle();
-  builder.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0}, {"attributes", {{"POSITION", 0}}}};
+  builder.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", 0},
+                                                                     {"attributes", {{"POSITION", 0}}}};
   CHECK(load(builder).triangles.size() == 1);  // with the fallback
   builder.json["accessors"][0].erase("bufferView");
   CHECK_THAT(load_error(builder), Contains("mesh 0 \"Body\", primitive 0 is compressed with Draco"));

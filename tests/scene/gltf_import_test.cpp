@@ -13,9 +13,15 @@ using Corner = std::tuple<float, float, float>;
 
 namespace {
 
-Corner v0(const Triangle& t) { return {t.v0[0], t.v0[1], t.v0[2]}; }
-Corner v1(const Triangle& t) { return {t.v1[0], t.v1[1], t.v1[2]}; }
-Corner v2(const Triangle& t) { return {t.v2[0], t.v2[1], t.v2[2]}; }
+Corner v0(const Triangle& t) {
+  return {t.v0[0], t.v0[1], t.v0[2]};
+}
+Corner v1(const Triangle& t) {
+  return {t.v1[0], t.v1[1], t.v1[2]};
+}
+Corner v2(const Triangle& t) {
+  return {t.v2[0], t.v2[1], t.v2[2]};
+}
 
 float normal_z(const Triangle& t) {
   return (t.v1[0] - t.v0[0]) * (t.v2[1] - t.v0[1]) - (t.v1[1] - t.v0[1]) * (t.v2[0] - t.v0[0]);
@@ -81,7 +87,8 @@ TEST_CASE("transforms compose in double precision and round once") {
 
 TEST_CASE("without a transform coordinates stay as they are, a negative zero too") {
   GltfBuilder builder;
-  builder.add_mesh({{"attributes", {{"POSITION", builder.add_positions({-0.0F, 0, 0, 0.1F, 0, 0, 0, 1e-30F, 0})}}}});
+  builder.add_mesh(
+      {{"attributes", {{"POSITION", builder.add_positions({-0.0F, 0, 0, 0.1F, 0, 0, 0, 1e-30F, 0})}}}});
   const Triangle t = load(builder).triangles.at(0);
   CHECK(std::signbit(t.v0[0]));
   CHECK(t.v1[0] == 0.1F);
@@ -125,8 +132,9 @@ TEST_CASE("indices of 8, 16 and 32 bits mean the same") {
     builder.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", accessor}});
     return load(builder).triangles.at(0);
   };
-  for (const Triangle& t : {with(std::vector<std::uint8_t>{1, 2, 3}), with(std::vector<std::uint16_t>{1, 2, 3}),
-                            with(std::vector<std::uint32_t>{1, 2, 3})}) {
+  for (const Triangle& t :
+       {with(std::vector<std::uint8_t>{1, 2, 3}), with(std::vector<std::uint16_t>{1, 2, 3}),
+        with(std::vector<std::uint32_t>{1, 2, 3})}) {
     CHECK(v0(t) == Corner{0, 0, 0});
     CHECK(v1(t) == Corner{1, 0, 0});
     CHECK(v2(t) == Corner{0, 1, 0});
@@ -164,7 +172,8 @@ TEST_CASE("points, lines and primitives without positions are skipped and counte
   GltfBuilder builder = one_triangle();
   const int positions = builder.primitive()["attributes"]["POSITION"];
   for (const int mode : {0, 1, 2, 3}) {
-    builder.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", positions}}}, {"mode", mode}});
+    builder.json["meshes"][0]["primitives"].push_back(
+        {{"attributes", {{"POSITION", positions}}}, {"mode", mode}});
   }
   builder.json["meshes"][0]["primitives"].push_back({{"attributes", {{"NORMAL", positions}}}});
   const Scene scene = load(builder);

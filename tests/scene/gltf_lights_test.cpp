@@ -56,8 +56,8 @@ GltfBuilder emissive_square() {
 }  // namespace
 
 TEST_CASE("a perspective camera looks down its node's -z with +y up, scale ignored") {
-  const Scene scene =
-      load(with_camera({{"type", "perspective"}, {"perspective", {{"yfov", 0.9}, {"aspectRatio", 1.5}, {"znear", 0.1}}}}));
+  const Scene scene = load(with_camera(
+      {{"type", "perspective"}, {"perspective", {{"yfov", 0.9}, {"aspectRatio", 1.5}, {"znear", 0.1}}}}));
   REQUIRE(scene.cameras.size() == 1);
   const gnomon::Camera& camera = scene.cameras[0];
   CHECK(camera.name == "Stand");
@@ -69,7 +69,8 @@ TEST_CASE("a perspective camera looks down its node's -z with +y up, scale ignor
 }
 
 TEST_CASE("a sheared camera's up stays at right angles to its view") {
-  GltfBuilder builder = with_camera({{"type", "perspective"}, {"perspective", {{"yfov", 0.9}, {"znear", 0.1}}}});
+  GltfBuilder builder =
+      with_camera({{"type", "perspective"}, {"perspective", {{"yfov", 0.9}, {"znear", 0.1}}}});
   builder.json["nodes"][1] = {{"camera", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0.5, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
   const Scene scene = load(builder);
   check_near(scene.cameras.at(0).up, 0, 1, 0);
@@ -91,7 +92,8 @@ TEST_CASE("cameras that cannot be used are left out with a note") {
   CHECK(load(flat).cameras.empty());
 }
 
-TEST_CASE("a camera or light that does not exist, or of a type that does not, is an error that names its node") {
+TEST_CASE(
+    "a camera or light that does not exist, or of a type that does not, is an error that names its node") {
   GltfBuilder builder = with_camera({{"type", "perspective"}, {"perspective", {{"yfov", 0.9}}}});
   builder.json["nodes"][1]["camera"] = 3;
   CHECK_THAT(load_error(builder), Contains("node 1 \"Stand\": camera 3 does not exist, there are 1"));
@@ -104,7 +106,8 @@ TEST_CASE("a camera or light that does not exist, or of a type that does not, is
 }
 
 TEST_CASE("a point light stands at its node; color times intensity, no range means no limit") {
-  const Scene scene = load(with_light({{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 8}, {"name", "Bulb"}}));
+  const Scene scene =
+      load(with_light({{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 8}, {"name", "Bulb"}}));
   REQUIRE(scene.lights.size() == 1);
   const gnomon::Light& light = scene.lights[0];
   CHECK(light.kind == LightKind::kPoint);
@@ -140,7 +143,8 @@ TEST_CASE("materials keep base color, emission and roughness, clamped to what th
   builder.primitive()["material"] = 1;
   builder.json["materials"] = {
       {{"name", "Plain"}},
-      {{"name", "Red"}, {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 2, -1, 1}}, {"roughnessFactor", 0.25}}}}};
+      {{"name", "Red"},
+       {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 2, -1, 1}}, {"roughnessFactor", 0.25}}}}};
   const Scene scene = load(builder);
   REQUIRE(scene.materials.size() == 2);
   CHECK(scene.materials[0].base_color == Vec3{1, 1, 1});

@@ -1,4 +1,5 @@
-// Files on disk: telling formats apart, buffers beside a .gltf, missing files, and real scenes where there are any.
+// Files on disk: telling formats apart, buffers beside a .gltf, missing files, and real scenes where there
+// are any.
 #include <catch2/catch.hpp>
 #include <utility>
 
@@ -37,7 +38,8 @@ TEST_CASE("formats are told apart by content first and extension second") {
   CHECK(import_scene(folder.write("e.OBJ", std::string(kObj))).triangles.size() == 1);
   CHECK_THAT(import_error(folder.write("f.txt", std::string(kObj))),
              StartsWith("kBadScene") && Contains("f.txt: not a scene; it should be .gltf, .glb or .obj"));
-  CHECK_THAT(import_error(folder.write("g.glb", std::string(kObj))), Contains("g.glb: is neither glTF nor GLB"));
+  CHECK_THAT(import_error(folder.write("g.glb", std::string(kObj))),
+             Contains("g.glb: is neither glTF nor GLB"));
   CHECK_THAT(import_error(folder.write("h.glb", std::string())), StartsWith("kBadScene"));
 }
 
@@ -49,7 +51,8 @@ TEST_CASE("a scene is named after its file") {
 TEST_CASE("a file that cannot be opened is kIo and says why") {
   const TemporaryFolder folder;
   for (const char* const name : {"none.glb", "none.obj", "none"}) {
-    CHECK_THAT(import_error(folder.path() / name), StartsWith("kIo: cannot read") && Contains("no such file"));
+    CHECK_THAT(import_error(folder.path() / name),
+               StartsWith("kIo: cannot read") && Contains("no such file"));
   }
   CHECK_THAT(import_error(folder.path()), StartsWith("kIo") && Contains("it is a folder"));
   CHECK_THAT(import_error("/dev/zero"), StartsWith("kIo") && Contains("not a regular file"));
@@ -57,7 +60,8 @@ TEST_CASE("a file that cannot be opened is kIo and says why") {
   CHECK_THAT(error_of([&] { return gnomon::import_gltf(folder.path() / "x.glb"); }), StartsWith("kIo"));
 }
 
-TEST_CASE("a buffer file is found beside the .gltf, also with escapes in its name and more bytes than needed") {
+TEST_CASE(
+    "a buffer file is found beside the .gltf, also with escapes in its name and more bytes than needed") {
   const TemporaryFolder folder;
   Bytes data = one_triangle().binary;
   data.resize(data.size() + 100);
@@ -67,8 +71,9 @@ TEST_CASE("a buffer file is found beside the .gltf, also with escapes in its nam
 
 TEST_CASE("a missing buffer file is kIo; one that is too short or no file is named as well") {
   const TemporaryFolder folder;
-  CHECK_THAT(import_error(folder.write("a.gltf", with_external_buffer("mesh.bin"))),
-             StartsWith("kIo") && Contains("a.gltf: cannot read") && Contains("mesh.bin: there is no such file"));
+  CHECK_THAT(
+      import_error(folder.write("a.gltf", with_external_buffer("mesh.bin"))),
+      StartsWith("kIo") && Contains("a.gltf: cannot read") && Contains("mesh.bin: there is no such file"));
   CHECK_THAT(import_error(folder.write("b.gltf", with_external_buffer("/dev/zero"))),
              StartsWith("kIo") && Contains("/dev/zero: it is not a regular file"));
   folder.write("short.bin", std::string("0123456789"));
@@ -79,10 +84,13 @@ TEST_CASE("a missing buffer file is kIo; one that is too short or no file is nam
 TEST_CASE("real scenes load, where this checkout has them beside it") {
   const std::filesystem::path shared = GNOMON_SHARED_FOLDER;
   // Triangle counts as their own index accessors state them.
-  const std::vector<std::pair<const char*, std::size_t>> scenes{
-      {"gltf/CesiumMan.glb", 4672},        {"gltf/retroufo.glb", 16428},    {"gltf/balloon/scene.gltf", 35698},
-      {"thesis/scenes/woods.glb", 7058},   {"thesis/scenes/cottage.glb", 4281}, {"thesis/scenes/suzanne.glb", 967},
-      {"thesis/scenes/cottage-walls.glb", 5817}};
+  const std::vector<std::pair<const char*, std::size_t>> scenes{{"gltf/CesiumMan.glb", 4672},
+                                                                {"gltf/retroufo.glb", 16428},
+                                                                {"gltf/balloon/scene.gltf", 35698},
+                                                                {"thesis/scenes/woods.glb", 7058},
+                                                                {"thesis/scenes/cottage.glb", 4281},
+                                                                {"thesis/scenes/suzanne.glb", 967},
+                                                                {"thesis/scenes/cottage-walls.glb", 5817}};
   for (const auto& [name, triangles] : scenes) {
     if (!std::filesystem::exists(shared / name)) continue;
     INFO(name);

@@ -41,8 +41,8 @@ TEST_CASE("faces name vertices from 1, or back from the last one so far") {
 }
 
 TEST_CASE("normals, texture coordinates, colors and weights beside the positions are passed over") {
-  const Scene scene = load_obj(
-      "v 0 0 0 1 0.5 0.25\nv 1 0 0 1.0\nv 0 1 0\nvt 0 0\nvn 0 0 1\ns off\nf 1/1/1 2//1 3/1\n");
+  const Scene scene =
+      load_obj("v 0 0 0 1 0.5 0.25\nv 1 0 0 1.0\nv 0 1 0\nvt 0 0\nvn 0 0 1\ns off\nf 1/1/1 2//1 3/1\n");
   CHECK(scene.triangles.size() == 1);
 }
 
@@ -91,7 +91,8 @@ TEST_CASE("vertex numbers that do not exist are errors that name the line") {
              StartsWith("kBadScene: line 5: a face uses vertex 5, and there are 4"));
   CHECK_THAT(obj_error(std::string(kSquare) + "f 1 2 -5\n"), Contains("line 5: a face needs vertex numbers"));
   CHECK_THAT(obj_error(std::string(kSquare) + "f 1 2 0\n"), Contains("line 5"));
-  CHECK_THAT(obj_error(std::string(kSquare) + "f 1 two 3\n"), Contains("line 5") && Contains("\"f 1 two 3\""));
+  CHECK_THAT(obj_error(std::string(kSquare) + "f 1 two 3\n"),
+             Contains("line 5") && Contains("\"f 1 two 3\""));
   CHECK_THAT(obj_error(std::string(kSquare) + "f 1 2 3 9\n"), Contains("line 5: a face uses vertex 9"));
 }
 
@@ -132,10 +133,12 @@ TEST_CASE("OBJ triangles above max_triangles are refused") {
 
 TEST_CASE("materials are found beside the OBJ and give color, emission and roughness") {
   const TemporaryFolder folder;
-  folder.write("my paint.mtl", std::string("newmtl red\nKd 0.5 0.25 2\nPr 0.125\nnewmtl lamp\nKe 3 2 1\nKd 1 1 1\n"));
+  folder.write("my paint.mtl",
+               std::string("newmtl red\nKd 0.5 0.25 2\nPr 0.125\nnewmtl lamp\nKe 3 2 1\nKd 1 1 1\n"));
   const auto file = folder.write(
-      "room.obj", "mtllib my paint.mtl\n" + std::string(kSquare) +
-                      "o a\nusemtl red\nf 1 2 3\nusemtl lamp\nf 1 3 4\nf 4 3 2\no b\nf 1 2 4\nusemtl red\nf 2 3 4\n");
+      "room.obj",
+      "mtllib my paint.mtl\n" + std::string(kSquare) +
+          "o a\nusemtl red\nf 1 2 3\nusemtl lamp\nf 1 3 4\nf 4 3 2\no b\nf 1 2 4\nusemtl red\nf 2 3 4\n");
   const Scene scene = gnomon::import_obj(file);
   CHECK(scene.name == "room");
   REQUIRE(scene.materials.size() == 2);
@@ -157,7 +160,8 @@ TEST_CASE("several material files on a line are all read") {
   const TemporaryFolder folder;
   folder.write("a.mtl", std::string("newmtl a\nKd 1 0 0\n"));
   folder.write("b.mtl", std::string("newmtl b\nKd 0 1 0\n"));
-  const auto file = folder.write("x.obj", "mtllib a.mtl b.mtl\nusemtl b\n" + std::string(kSquare) + "f 1 2 3\n");
+  const auto file =
+      folder.write("x.obj", "mtllib a.mtl b.mtl\nusemtl b\n" + std::string(kSquare) + "f 1 2 3\n");
   const Scene scene = gnomon::import_obj(file);
   REQUIRE(scene.materials.size() == 2);
   CHECK(scene.materials[scene.material_ids.at(0)].name == "b");

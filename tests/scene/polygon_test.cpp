@@ -92,5 +92,7 @@ TEST_CASE("a polygon that faces another way, crosses itself or is flat still giv
   CHECK(split_polygon(std::vector<Vec3>(6, Vec3{1, 1, 1})).size() == 4);
   CHECK(split_polygon(std::vector<Vec3>{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}}).size() == 2);
   const float nan = std::nanf("");
-  CHECK(split_polygon(std::vector<Vec3>{{0, 0, 0}, {nan, 0, 0}, {1, 1, 0}, {0, 1, nan}, {0, nan, 1}}).size() == 3);
+  CHECK(
+      split_polygon(std::vector<Vec3>{{0, 0, 0}, {nan, 0, 0}, {1, 1, 0}, {0, 1, nan}, {0, nan, 1}}).size() ==
+      3);
 }

@@ -1,0 +1,121 @@
+// gnomon validate: passes what is right, and catches faults planted in the kernels.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+using Catch::Contains;
+using nlohmann::json;
+using program::Folder;
+using program::run;
+
+namespace {
+
+struct Edit {
+  std::string file, right, wrong;
+};
+
+// A copy of the kernels with some of their text replaced. Text that is no longer there fails the test: then the fault
+// has to be planted anew.
+class BrokenKernels {
+ public:
+  explicit BrokenKernels(const std::vector<Edit>& edits) {
+    std::filesystem::copy(GNOMON_KERNEL_FOLDER, kernels_, std::filesystem::copy_options::recursive);
+    for (const Edit& edit : edits) {
+      std::string text = program::read_text(kernels_ / edit.file);
+      const auto at = text.find(edit.right);
+      CAPTURE(edit.file, edit.right);
+      REQUIRE(at != std::string::npos);
+      program::write_text(kernels_ / edit.file, text.replace(at, edit.right.size(), edit.wrong));
+    }
+  }
+  [[nodiscard]] program::Setup setup() const { return {{{"GNOMON_KERNELS", kernels_.string()}}, false, {}, {}}; }
+
+ private:
+  Folder folder_;
+  std::filesystem::path kernels_ = folder_.path() / "kernels";
+};
+
+const std::vector<std::string> kValidate{"validate", "gen:cottage:8k", "--count", "3k", "--max-rays", "300", "--json"};
+
+std::uint64_t sum_of(const json& document, const char* key) {
+  std::uint64_t sum = 0;
+  for (const json& kind : document.at("kinds")) sum += kind.at(key).get<std::uint64_t>();
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a right tree and right hits are found right") {
+  const auto outcome = run({"validate", "gen:cottage:8k", "--count", "3k", "--max-rays", "300", "--json"});
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.status == 0);
+  const json document = json::parse(outcome.out);
+  CHECK(document.at("ok") == true);
+  CHECK(document.at("mismatches") == 0);
+  CHECK(document.at("tree_fault").is_null());
+  CHECK(document.at("reference_hash") == document.at("tree").at("hash"));
+  REQUIRE(document.at("kinds").size() == 5);
+  for (const json& kind : document.at("kinds")) {
+    CAPTURE(kind.dump());
+    CHECK(kind.at("judged").get<int>() > 0);
+    for (const char* key : {"lost", "false_hits", "wrong_primitive", "ties", "any_closest_disagree"}) {
+      CHECK(kind.contains(key));
+    }
+    CHECK(kind.at("max_t_error_ulp").get<double>() < 4.0);
+  }
+  const auto text = run({"validate", "gen:cottage:8k", "--count", "300", "--quiet"});
+  CHECK(text.status == 0);
+  CHECK(text.err.empty());
+  CHECK_THAT(text.out, Contains("mismatches 0") && Contains("any/closest") && Contains("parallel"));
+}
+
+TEST_CASE("the reference builder is asked on large scenes only on demand") {
+  const std::vector<std::string> large{"validate", "gen:random:201k", "--count", "50", "--max-rays", "5", "--json"};
+  const json quick = json::parse(run(large).out);
+  CHECK(quick.at("reference_hash").is_null());
+  auto thorough = large;
+  thorough.emplace_back("--reference");
+  const json full = json::parse(run(thorough).out);
+  CHECK(full.at("reference_hash") == full.at("tree").at("hash"));
+}
+
+TEST_CASE("kernels that lose hits near the edges of triangles are caught") {
+  // What the float filter leaves undecided is taken for a miss, and it leaves more undecided.
+  const BrokenKernels broken({{"shared/hit_math.h", "  return -1;", "  return 0;"},
+                              {"shared/hit_math.h", "const gn_f32 bound = ", "const gn_f32 bound = 4096.0f * "}});
+  const auto outcome = run(kValidate, broken.setup());
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.status == 6);
+  const json document = json::parse(outcome.out);
+  CHECK(document.at("ok") == false);
+  CHECK(document.at("tree_fault").is_null());
+  CHECK(sum_of(document, "lost") > 0);
+  CHECK(document.at("mismatches") == sum_of(document, "lost") + sum_of(document, "false_hits") +
+                                         sum_of(document, "wrong_primitive") + sum_of(document, "any_closest_disagree"));
+}
+
+TEST_CASE("kernels that build boxes too small are caught by the tree alone") {
+  const BrokenKernels broken({{"prepare.cl", "hi = GN_VMAX(GN_VMAX(a, b), c)", "hi = GN_VMAX(a, b)"}});
+  const auto outcome = run(kValidate, broken.setup());
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.status == 6);
+  const json document = json::parse(outcome.out);
+  CHECK(document.at("ok") == false);
+  CHECK(document.at("tree_fault").is_string());
+  CHECK(document.at("reference_hash") != document.at("tree").at("hash"));
+  const auto text = run({"validate", "gen:cottage:8k", "--count", "50", "-q"}, broken.setup());
+  CHECK(text.status == 6);
+  CHECK_THAT(text.out, Contains("MISMATCH") && Contains("BROKEN") && Contains("DIFFERS"));
+}
+
+TEST_CASE("kernels that do not compile, or are not there, are failures that say so") {
+  const BrokenKernels broken({{"trace.cl", "__kernel void trace_closest(", "__kernel void trace_closest(what "}});
+  const auto outcome = run(kValidate, broken.setup());
+  CHECK(outcome.status == 1);
+  CHECK_THAT(outcome.err, Contains("build log") && Contains("trace.cl"));
+  const Folder empty;
+  const auto missing = run(kValidate, {{{"GNOMON_KERNELS", empty.path().string()}}, false, {}, {}});
+  CHECK(missing.status == 1);
+  CHECK_THAT(missing.err, Contains("GNOMON_KERNELS"));
+}

@@ -1,0 +1,1 @@
+// Owns the precompiled catch.hpp that all test programs share; tests nothing.

@@ -3,13 +3,17 @@
 #   memcheck.sh PROGRAM ARGUMENTS...
 # oclgrind's own exit status says nothing of what it saw: the program must succeed and the log must be empty.
 set -euo pipefail
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+# Programs from the cache would have been compiled with other options.
+export XDG_CACHE_HOME=$scratch GNOMON_DEVICE=oclgrind
 status=0
-GNOMON_DEVICE=oclgrind oclgrind --data-races --uninitialized --max-errors 20 --log "$log" "$@" || status=$?
-if [ -s "$log" ]; then
+# Inlining makes calls that oclgrind 21.10 does not know (llvm.experimental.noalias.scope.decl).
+oclgrind --data-races --uninitialized --build-options -cl-opt-disable --max-errors 20 --log "$scratch/log" "$@" ||
+  status=$?
+if [ -s "$scratch/log" ]; then
   echo "oclgrind reports:"
-  head -n 200 "$log"
+  head -n 200 "$scratch/log"
   exit 1
 fi
 exit "$status"

@@ -31,14 +31,14 @@ std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const Tim
   Facts facts;
   facts.add("device", describe(device));
   facts.add("scene", describe(scene));
-  facts.add("build", fixed(build.total_ms.median, 2) + " ms (median of " + std::to_string(build.runs.repeat) + ", " +
-                         fixed(build.total_ms.min, 2) + " to " + fixed(build.total_ms.max, 2) + "), " +
+  facts.add("build", fixed(build.total_ms.median, 2) + " ms (median of " + std::to_string(build.runs.repeat) +
+                         ", " + fixed(build.total_ms.min, 2) + " to " + fixed(build.total_ms.max, 2) + "), " +
                          fixed(mtris, 2) + " Mtris/s");
   facts.add("tree", describe(build));
   facts.add("leaves", fixed(build.stats.mean_leaf, 2) + " triangles on average, " +
                           std::to_string(build.stats.largest_leaf) + " at most");
-  facts.add("memory", format_bytes(build.tree.bytes()) + " tree, " + format_bytes(build.median.scratch_bytes) +
-                          " scratch");
+  facts.add("memory", format_bytes(build.tree.bytes()) + " tree, " +
+                          format_bytes(build.median.scratch_bytes) + " scratch");
   return facts.text();
 }
 
@@ -65,17 +65,18 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
   CLI::App* const command =
       program.add_subcommand("build", "Build a bounding volume hierarchy on a device and time it.");
   add_scene_options(*command, options->scene);
-  add_count(*command, "--repeat", options->runs.repeat, "timed builds, after one to warm up")->check(CLI::Range(1, 10000));
+  add_count(*command, "--repeat", options->runs.repeat, "timed builds, after one to warm up")
+      ->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);
   add_device_options(*command, options->device);
   add_output_options(*command, output);
-  command->footer("Binned surface area heuristic over all three axes. The tree depends on the triangles and the options\n"
-                  "under \"Tree\" alone: its hash is the same on every device. Times by stage are the device's own; the\n"
-                  "total is wall clock and includes the upload.\n\n"
-                  "Examples:\n  gnomon build model.glb\n  gnomon build gen:city:1M --bins 32 --device gpu --json");
-  command->callback([&action, options] {
-    action = [options](Console& console) { return run(*options, console); };
-  });
+  command->footer(
+      "Binned surface area heuristic over all three axes. The tree depends on the triangles and the options\n"
+      "under \"Tree\" alone: its hash is the same on every device. Times by stage are the device's own; the\n"
+      "total is wall clock and includes the upload.\n\n"
+      "Examples:\n  gnomon build model.glb\n  gnomon build gen:city:1M --bins 32 --device gpu --json");
+  command->callback(
+      [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }
 
 }  // namespace gnomon::app

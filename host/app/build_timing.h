@@ -1,5 +1,5 @@
-// Building a tree and timing it honestly: compiling kernels at first use is not build time. Feeds the subcommands that
-// build.
+// Building a tree and timing it honestly: compiling kernels at first use is not build time. Feeds the
+// subcommands that build.
 #pragma once
 
 #include <string>
@@ -27,7 +27,8 @@ struct TimedBuild {
 };
 
 // Throws as build_device.
-[[nodiscard]] TimedBuild build_timed(const cl::Context& context, const Scene& scene, const BuildOptions& options,
-                                     const BuildRuns& runs, const Progress& progress);
+[[nodiscard]] TimedBuild build_timed(const cl::Context& context, const Scene& scene,
+                                     const BuildOptions& options, const BuildRuns& runs,
+                                     const Progress& progress);
 
 }  // namespace gnomon::app

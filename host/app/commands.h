@@ -1,5 +1,5 @@
-// The subcommands, one file each. Each adds itself to the program: its options, its help, and what `action` becomes
-// when the command line names it. Feeds main.
+// The subcommands, one file each. Each adds itself to the program: its options, its help, and what `action`
+// becomes when the command line names it. Feeds main.
 #pragma once
 
 #include "options.h"

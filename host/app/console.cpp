@@ -34,9 +34,12 @@ std::string painted(const char* code, std::string_view text) {
 
 const char* code_of(Paint paint) {
   switch (paint) {
-    case Paint::kBold: return "1";
-    case Paint::kGood: return "32";
-    case Paint::kBad: return "1;31";
+    case Paint::kBold:
+      return "1";
+    case Paint::kGood:
+      return "32";
+    case Paint::kBad:
+      return "1;31";
   }
   return "0";
 }

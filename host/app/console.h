@@ -29,8 +29,8 @@ class Console {
 
   [[nodiscard]] bool json() const { return options_.json; }
 
-  // The result, on stdout: text for people, or the one document under --json. Throws Error{kIo} when stdout is full or
-  // closed.
+  // The result, on stdout: text for people, or the one document under --json. Throws Error{kIo} when stdout
+  // is full or closed.
   void print(const std::string& text);
   void print(const Json& document);
 

@@ -9,6 +9,8 @@ cl::Context open_device(const DeviceOptions& options) {
   return cl::Context(cl::choose_device(devices, options.choice), context);
 }
 
-const char* kind_of(const cl::DeviceInfo& device) { return device.is_gpu ? "gpu" : device.is_cpu ? "cpu" : "other"; }
+const char* kind_of(const cl::DeviceInfo& device) {
+  return device.is_gpu ? "gpu" : device.is_cpu ? "cpu" : "other";
+}
 
 }  // namespace gnomon::app

@@ -14,7 +14,8 @@ std::string environment_choice() {
   return value == nullptr ? std::string() : value;
 }
 
-// The device the other subcommands would use; with a choice in the environment that fits none, a note and nothing.
+// The device the other subcommands would use; with a choice in the environment that fits none, a note and
+// nothing.
 const cl::DeviceInfo* default_device(const std::vector<cl::DeviceInfo>& devices, Console& console) {
   try {
     return &cl::choose_device(devices, environment_choice());
@@ -50,12 +51,14 @@ std::string describe_all(const std::vector<cl::DeviceInfo>& devices, const cl::D
   std::string out;
   for (const cl::DeviceInfo& d : devices) {
     const std::string address = std::to_string(d.platform_index) + ":" + std::to_string(d.device_index);
-    out += "[" + std::to_string(d.index) + "] " + address + " " + kind_of(d) + "  " + console.paint(Paint::kBold, d.name) +
-           (&d == chosen ? "  (default)" : "") + (d.available ? "" : "  (not available)") + "\n";
+    out += "[" + std::to_string(d.index) + "] " + address + " " + kind_of(d) + "  " +
+           console.paint(Paint::kBold, d.name) + (&d == chosen ? "  (default)" : "") +
+           (d.available ? "" : "  (not available)") + "\n";
     Facts facts;
     facts.add("    platform", d.platform_name + ", " + d.version + ", driver " + d.driver);
-    facts.add("    memory", format_bytes(d.global_memory) + (d.unified_memory ? " shared with the host" : "") +
-                                ", at most " + format_bytes(d.max_allocation) + " in one buffer, " +
+    facts.add("    memory", format_bytes(d.global_memory) +
+                                (d.unified_memory ? " shared with the host" : "") + ", at most " +
+                                format_bytes(d.max_allocation) + " in one buffer, " +
                                 format_bytes(d.local_memory) + " local");
     facts.add("    work", std::to_string(d.compute_units) + " compute units, groups up to " +
                               std::to_string(d.max_work_group) + (d.fp64 ? ", fp64" : ", no fp64") +
@@ -81,10 +84,12 @@ int run(Console& console) {
 }  // namespace
 
 void add_devices_command(CLI::App& program, OutputOptions& output, Action& action) {
-  CLI::App* const command = program.add_subcommand("devices", "List the OpenCL devices and what each can do.");
+  CLI::App* const command =
+      program.add_subcommand("devices", "List the OpenCL devices and what each can do.");
   add_output_options(*command, output);
   command->footer(
-      "The number in brackets, platform:device, cpu, gpu or any part of a name can be given to --device of the other\n"
+      "The number in brackets, platform:device, cpu, gpu or any part of a name can be given to --device of "
+      "the other\n"
       "subcommands, or in the environment variable GNOMON_DEVICE.\n\n"
       "Examples:\n  gnomon devices\n  gnomon devices --json");
   command->callback([&action] { action = run; });

@@ -12,7 +12,8 @@ Json start_document(const std::string& command) {
 }
 
 void add_device(Json& document, const cl::DeviceInfo* device) {
-  for (const char* key : {"device", "driver", "platform", "opencl", "device_kind", "device_index"}) document[key] = nullptr;
+  for (const char* key : {"device", "driver", "platform", "opencl", "device_kind", "device_index"})
+    document[key] = nullptr;
   if (device == nullptr) return;
   document["device"] = device->name;
   document["driver"] = device->driver;
@@ -74,7 +75,9 @@ Json to_json(const Spread& spread) {
   return {{"median", spread.median}, {"min", spread.min}, {"max", spread.max}, {"n", spread.count}};
 }
 
-std::string describe(const cl::DeviceInfo& device) { return device.name + " (" + device.platform_name + ")"; }
+std::string describe(const cl::DeviceInfo& device) {
+  return device.name + " (" + device.platform_name + ")";
+}
 
 std::string describe(const Scene& scene) {
   std::string text = std::to_string(scene.triangles.size()) + " triangles, hash " + scene_hash(scene);
@@ -84,8 +87,8 @@ std::string describe(const Scene& scene) {
 
 std::string describe(const TimedBuild& build) {
   return "hash " + build.hash + ", SAH cost " + fixed(build.stats.sah_cost, 2) + ", " +
-         std::to_string(build.stats.nodes) + " nodes, " + std::to_string(build.stats.leaves) + " leaves, depth " +
-         std::to_string(build.stats.max_depth);
+         std::to_string(build.stats.nodes) + " nodes, " + std::to_string(build.stats.leaves) +
+         " leaves, depth " + std::to_string(build.stats.max_depth);
 }
 
 }  // namespace gnomon::app

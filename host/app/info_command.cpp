@@ -45,7 +45,9 @@ LightCounts count_lights(const Scene& scene) {
   return counts;
 }
 
-std::string describe(const Vec3& v) { return fixed(v[0], 3) + " " + fixed(v[1], 3) + " " + fixed(v[2], 3); }
+std::string describe(const Vec3& v) {
+  return fixed(v[0], 3) + " " + fixed(v[1], 3) + " " + fixed(v[2], 3);
+}
 
 std::string camera_names(const Scene& scene) {
   std::string names;
@@ -59,7 +61,8 @@ std::string light_counts(const Scene& scene) {
   const LightCounts counts = count_lights(scene);
   std::string kinds;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] > 0) kinds += (kinds.empty() ? " (" : ", ") + std::to_string(counts[i]) + " " + kLightNames[i];
+    if (counts[i] > 0)
+      kinds += (kinds.empty() ? " (" : ", ") + std::to_string(counts[i]) + " " + kLightNames[i];
   }
   return std::to_string(scene.lights.size()) + (kinds.empty() ? "" : kinds + ")");
 }
@@ -101,7 +104,8 @@ std::string facts_of(const Options& options, const Scene& scene) {
 
 int run(const Options& options, Console& console) {
   const auto devices = cl::list_devices();
-  const cl::DeviceInfo* const device = devices.empty() ? nullptr : &cl::choose_device(devices, options.device.choice);
+  const cl::DeviceInfo* const device =
+      devices.empty() ? nullptr : &cl::choose_device(devices, options.device.choice);
   const Scene scene = load_scene(options.scene, console);
   Json document = start_document("info");
   add_device(document, device);
@@ -126,18 +130,20 @@ int run(const Options& options, Console& console) {
 
 void add_info_command(CLI::App& program, OutputOptions& output, Action& action) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const command = program.add_subcommand("info", "Say what is in a scene and what building it will need.");
+  CLI::App* const command =
+      program.add_subcommand("info", "Say what is in a scene and what building it will need.");
   add_scene_options(*command, options->scene);
   command
-      ->add_option("--device", options->device.choice, "the device whose memory to compare with, as for build")
+      ->add_option("--device", options->device.choice,
+                   "the device whose memory to compare with, as for build")
       ->envname("GNOMON_DEVICE")
       ->type_name("D");
   add_output_options(*command, output);
-  command->footer("Needs no OpenCL device; with one, it says whether a build would fit.\n\n"
-                  "Examples:\n  gnomon info model.glb\n  gnomon info gen:forest:1M --json");
-  command->callback([&action, options] {
-    action = [options](Console& console) { return run(*options, console); };
-  });
+  command->footer(
+      "Needs no OpenCL device; with one, it says whether a build would fit.\n\n"
+      "Examples:\n  gnomon info model.glb\n  gnomon info gen:forest:1M --json");
+  command->callback(
+      [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }
 
 }  // namespace gnomon::app

@@ -9,7 +9,9 @@ namespace {
 
 volatile std::sig_atomic_t asked_to_stop = 0;
 
-extern "C" void remember_interrupt(int) { asked_to_stop = 1; }
+extern "C" void remember_interrupt(int) {
+  asked_to_stop = 1;
+}
 
 }  // namespace
 
@@ -20,7 +22,9 @@ void catch_interrupts() {
   sigaction(SIGINT, &action, nullptr);
 }
 
-bool interrupted() { return asked_to_stop != 0; }
+bool interrupted() {
+  return asked_to_stop != 0;
+}
 
 void stop_if_interrupted() {
   if (interrupted()) throw Error(ErrorCode::kCancelled, "cancelled");

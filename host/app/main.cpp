@@ -13,7 +13,8 @@ namespace gnomon::app {
 namespace {
 
 const char* const kFooter =
-    "SCENE is a .gltf, .glb or .obj file, or gen:NAME[:TRIANGLES[:SEED]] for a generated one (gnomon scene --list).\n"
+    "SCENE is a .gltf, .glb or .obj file, or gen:NAME[:TRIANGLES[:SEED]] for a generated one (gnomon scene "
+    "--list).\n"
     "Data goes to stdout, notes and progress to stderr. Counts may be written 250000, 250k, 1M or 1e6.\n"
     "\n"
     "A first round:\n"
@@ -31,13 +32,20 @@ const char* const kFooter =
 
 int status_of(ErrorCode code) {
   switch (code) {
-    case ErrorCode::kInvalidArgument: return kUsage;
-    case ErrorCode::kIo: return kFailure;
-    case ErrorCode::kNoDevice: return kNoDevice;
-    case ErrorCode::kBadScene: return kBadScene;
-    case ErrorCode::kOutOfMemory: return kOutOfMemory;
-    case ErrorCode::kDevice: return kFailure;
-    case ErrorCode::kCancelled: return kInterrupted;
+    case ErrorCode::kInvalidArgument:
+      return kUsage;
+    case ErrorCode::kIo:
+      return kFailure;
+    case ErrorCode::kNoDevice:
+      return kNoDevice;
+    case ErrorCode::kBadScene:
+      return kBadScene;
+    case ErrorCode::kOutOfMemory:
+      return kOutOfMemory;
+    case ErrorCode::kDevice:
+      return kFailure;
+    case ErrorCode::kCancelled:
+      return kInterrupted;
   }
   return kFailure;
 }
@@ -64,9 +72,10 @@ int run_action(const Action& action, Console& console) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("gnomon builds bounding volume hierarchies on any OpenCL device, traces rays through them and "
-                   "checks the answers.",
-                   "gnomon");
+  CLI::App program(
+      "gnomon builds bounding volume hierarchies on any OpenCL device, traces rays through them and "
+      "checks the answers.",
+      "gnomon");
   OutputOptions output;
   Action action;
   program.get_formatter()->column_width(36);
@@ -82,7 +91,8 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return program.exit(error);  // help
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+      return program.exit(error);  // help
     Console(output).error(std::string(error.what()) + "\n" + hint(program));
     return kUsage;
   }

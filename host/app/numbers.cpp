@@ -10,10 +10,14 @@ namespace {
 
 double scale_of(char suffix) {
   switch (suffix) {
-    case 'k': return 1e3;
-    case 'M': return 1e6;
-    case 'G': return 1e9;
-    default: return 1.0;
+    case 'k':
+      return 1e3;
+    case 'M':
+      return 1e6;
+    case 'G':
+      return 1e9;
+    default:
+      return 1.0;
   }
 }
 
@@ -23,7 +27,8 @@ std::optional<std::uint64_t> parse_count(std::string_view text) {
   if (text.empty()) return std::nullopt;
   std::uint64_t whole = 0;
   const char* const end = text.data() + text.size();
-  if (const auto [stop, error] = std::from_chars(text.data(), end, whole); error == std::errc{} && stop == end) {
+  if (const auto [stop, error] = std::from_chars(text.data(), end, whole);
+      error == std::errc{} && stop == end) {
     return whole < (1ULL << 63U) ? std::optional(whole) : std::nullopt;
   }
   const double scale = scale_of(text.back());

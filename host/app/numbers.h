@@ -8,7 +8,8 @@
 
 namespace gnomon::app {
 
-// "250000", "250k", "1M", "1.5M", "1e6": a whole number below 2^63; k, M and G are powers of ten. Nothing else.
+// "250000", "250k", "1M", "1.5M", "1e6": a whole number below 2^63; k, M and G are powers of ten. Nothing
+// else.
 [[nodiscard]] std::optional<std::uint64_t> parse_count(std::string_view text);
 
 // With a fixed number of digits after the point.

@@ -19,22 +19,28 @@ CLI::Validator count_reader() {
 
 template <typename Number>
 CLI::Option* add_number(CLI::App& command, const std::string& flags, Number& value, const std::string& help) {
-  return command.add_option(flags, value, help)->transform(count_reader())->type_name("N")->capture_default_str();
+  return command.add_option(flags, value, help)
+      ->transform(count_reader())
+      ->type_name("N")
+      ->capture_default_str();
 }
 
 }  // namespace
 
-CLI::Option* add_count(CLI::App& command, const std::string& flags, std::uint64_t& value, const std::string& help) {
+CLI::Option* add_count(CLI::App& command, const std::string& flags, std::uint64_t& value,
+                       const std::string& help) {
   return add_number(command, flags, value, help);
 }
-CLI::Option* add_count(CLI::App& command, const std::string& flags, std::uint32_t& value, const std::string& help) {
+CLI::Option* add_count(CLI::App& command, const std::string& flags, std::uint32_t& value,
+                       const std::string& help) {
   return add_number(command, flags, value, help);
 }
 
 void add_output_options(CLI::App& command, OutputOptions& options) {
   const std::string group = "Output";
   command.add_flag("--json", options.json, "print one JSON document on stdout instead of text")->group(group);
-  command.add_flag("-q,--quiet", options.quiet, "no notes and no progress on stderr, only errors")->group(group);
+  command.add_flag("-q,--quiet", options.quiet, "no notes and no progress on stderr, only errors")
+      ->group(group);
   command.add_option("--color", options.color, "auto, always or never; auto heeds NO_COLOR")
       ->check(CLI::IsMember({"auto", "always", "never"}))
       ->type_name("WHEN")
@@ -46,7 +52,8 @@ void add_device_options(CLI::App& command, DeviceOptions& options) {
   const std::string group = "Device";
   command
       .add_option("--device", options.choice,
-                  "an index, platform:device, cpu, gpu or a part of the name (see gnomon devices); default: the first "
+                  "an index, platform:device, cpu, gpu or a part of the name (see gnomon devices); default: "
+                  "the first "
                   "GPU, else the first CPU")
       ->envname("GNOMON_DEVICE")
       ->type_name("D")
@@ -60,7 +67,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
       ->type_name("SCENE");
   command
       .add_option("--invalid", options.invalid,
-                  "triangles that cannot be traced (NaN, infinite, no area): drop and count them, or reject the scene")
+                  "triangles that cannot be traced (NaN, infinite, no area): drop and count them, or reject "
+                  "the scene")
       ->check(CLI::IsMember({"reject", "drop"}))
       ->type_name("POLICY")
       ->capture_default_str();
@@ -69,8 +77,11 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 void add_build_options(CLI::App& command, BuildOptions& options) {
   const std::string tree = "Tree";
   add_count(command, "--bins", options.bins, "split candidates per axis, 2 to 64")->group(tree);
-  add_count(command, "--max-leaf", options.max_leaf_size, "triangles in a leaf at most, 1 to 255")->group(tree);
-  command.add_option("--cost-traversal", options.cost_traversal, "of visiting a node, for the surface area heuristic")
+  add_count(command, "--max-leaf", options.max_leaf_size, "triangles in a leaf at most, 1 to 255")
+      ->group(tree);
+  command
+      .add_option("--cost-traversal", options.cost_traversal,
+                  "of visiting a node, for the surface area heuristic")
       ->type_name("C")
       ->group(tree)
       ->capture_default_str();
@@ -78,14 +89,18 @@ void add_build_options(CLI::App& command, BuildOptions& options) {
       ->type_name("C")
       ->group(tree)
       ->capture_default_str();
-  add_count(command, "--median-depth", options.median_depth, "from here on nodes are halved by count, 1 to 64")
+  add_count(command, "--median-depth", options.median_depth,
+            "from here on nodes are halved by count, 1 to 64")
       ->group(tree);
   const std::string work = "How the device works (never changes the tree; 0: it decides)";
-  add_count(command, "--work-group-size", options.work_group_size, "a power of two up to 256; 1: serial kernels")
+  add_count(command, "--work-group-size", options.work_group_size,
+            "a power of two up to 256; 1: serial kernels")
       ->group(work);
-  add_count(command, "--subtree-size", options.subtree_size, "triangles one work-group builds alone, 32 to 1M")
+  add_count(command, "--subtree-size", options.subtree_size,
+            "triangles one work-group builds alone, 32 to 1M")
       ->group(work);
-  add_count(command, "--chunk-size", options.chunk_size, "triangles one work-group bins in a large node, 64 to 1M")
+  add_count(command, "--chunk-size", options.chunk_size,
+            "triangles one work-group bins in a large node, 64 to 1M")
       ->group(work);
 }
 

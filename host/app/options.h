@@ -34,7 +34,9 @@ void add_scene_options(CLI::App& command, SceneOptions& options);
 void add_build_options(CLI::App& command, BuildOptions& options);
 
 // An option that holds a whole number, given as parse_count reads it.
-CLI::Option* add_count(CLI::App& command, const std::string& flags, std::uint64_t& value, const std::string& help);
-CLI::Option* add_count(CLI::App& command, const std::string& flags, std::uint32_t& value, const std::string& help);
+CLI::Option* add_count(CLI::App& command, const std::string& flags, std::uint64_t& value,
+                       const std::string& help);
+CLI::Option* add_count(CLI::App& command, const std::string& flags, std::uint32_t& value,
+                       const std::string& help);
 
 }  // namespace gnomon::app

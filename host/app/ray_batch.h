@@ -11,8 +11,8 @@
 namespace gnomon::app {
 
 // `count` rays; bounce and shadow rays start where primary rays hit, so a batch of them can be smaller.
-[[nodiscard]] std::vector<Ray> make_rays(RayKind kind, const Scene& scene, const Tracer& tracer, std::uint64_t count,
-                                         std::uint64_t seed, const Progress& progress);
+[[nodiscard]] std::vector<Ray> make_rays(RayKind kind, const Scene& scene, const Tracer& tracer,
+                                         std::uint64_t count, std::uint64_t seed, const Progress& progress);
 
 // The kinds' names, and a text for --help that explains them.
 [[nodiscard]] std::vector<std::string> ray_kind_names();

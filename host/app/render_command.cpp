@@ -35,13 +35,14 @@ struct Outcome {
   [[nodiscard]] std::uint64_t rays() const { return result.camera_rays + result.other_rays; }
 };
 
-Outcome render_timed(const Options& options, const cl::Context& context, const TimedBuild& build, const Scene& scene,
-                     const Progress& progress) {
+Outcome render_timed(const Options& options, const cl::Context& context, const TimedBuild& build,
+                     const Scene& scene, const Progress& progress) {
   Outcome outcome;
   const auto start = std::chrono::steady_clock::now();
   outcome.result = render(context, build.tree, scene, options.render, progress);
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  outcome.exposure = auto_exposure(outcome.result.picture, outcome.result.coverage) * std::exp2(options.exposure);
+  outcome.exposure =
+      auto_exposure(outcome.result.picture, outcome.result.coverage) * std::exp2(options.exposure);
   outcome.heat = heat_scale(outcome.result.boxes);
   return outcome;
 }
@@ -52,7 +53,8 @@ void write_pictures(const Options& options, const Outcome& outcome) {
   stop_if_interrupted();
   write_png(picture, options.file);
   if (options.heat_map.empty()) return;
-  write_png(heat_map(options.render.width, options.render.height, result.boxes, outcome.heat), options.heat_map);
+  write_png(heat_map(options.render.width, options.render.height, result.boxes, outcome.heat),
+            options.heat_map);
 }
 
 void add_outcome(Json& document, const Options& options, const Outcome& outcome) {
@@ -76,15 +78,15 @@ void add_outcome(Json& document, const Options& options, const Outcome& outcome)
                           {"mean_boxes", outcome.heat.mean}};
 }
 
-std::string facts_of(const Options& options, const cl::DeviceInfo& device, const Scene& scene, const TimedBuild& build,
-                     const Outcome& outcome) {
+std::string facts_of(const Options& options, const cl::DeviceInfo& device, const Scene& scene,
+                     const TimedBuild& build, const Outcome& outcome) {
   Facts facts;
   facts.add("device", describe(device));
   facts.add("scene", describe(scene));
   facts.add("tree", describe(build));
   facts.add("picture", options.file + ", " + std::to_string(options.render.width) + " x " +
-                           std::to_string(options.render.height) + ", " + std::to_string(options.render.samples) +
-                           " samples a pixel");
+                           std::to_string(options.render.height) + ", " +
+                           std::to_string(options.render.samples) + " samples a pixel");
   if (!options.heat_map.empty()) {
     facts.add("heat map", options.heat_map + ", 0 (black) to " + fixed(outcome.heat.white, 0) +
                               " boxes a camera ray (pale), " + fixed(outcome.heat.mean, 1) + " on average, " +
@@ -119,14 +121,18 @@ int run(Options options, Console& console) {
 
 void add_render_command(CLI::App& program, OutputOptions& output, Action& action) {
   const auto options = std::make_shared<Options>();
-  CLI::App* const command = program.add_subcommand("render", "Make a picture of a scene, and a heat map of the work.");
+  CLI::App* const command =
+      program.add_subcommand("render", "Make a picture of a scene, and a heat map of the work.");
   add_scene_options(*command, options->scene);
   command->add_option("-o,--output", options->file, "the PNG file to write")->required()->type_name("PNG");
-  command->add_option("--heat-map", options->heat_map, "also a picture of the boxes tested by each pixel's camera rays")
+  command
+      ->add_option("--heat-map", options->heat_map,
+                   "also a picture of the boxes tested by each pixel's camera rays")
       ->type_name("PNG");
   add_count(*command, "--width", options->render.width, "in pixels, up to 16384");
   add_count(*command, "--height", options->render.height, "in pixels, up to 16384");
-  add_count(*command, "--samples", options->render.samples, "camera rays a pixel, up to 4096; more is smoother");
+  add_count(*command, "--samples", options->render.samples,
+            "camera rays a pixel, up to 4096; more is smoother");
   add_count(*command, "--seed", options->render.seed, "the same seed gives the same picture");
   command->add_option("--exposure", options->exposure, "brighter or darker than by itself, in steps of two")
       ->check(CLI::Range(-20.0, 20.0))
@@ -135,13 +141,13 @@ void add_render_command(CLI::App& program, OutputOptions& output, Action& action
   add_build_options(*command, options->build);
   add_device_options(*command, options->device);
   add_output_options(*command, output);
-  command->footer("Through the scene's first camera (else one that sees all of it), lit by its lights (else by a sun):\n"
-                  "direct light, sky, matt surfaces. Ctrl-C leaves no half picture.\n\n"
-                  "Examples:\n  gnomon render model.glb -o model.png\n"
-                  "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png --samples 32");
-  command->callback([&action, options] {
-    action = [options](Console& console) { return run(*options, console); };
-  });
+  command->footer(
+      "Through the scene's first camera (else one that sees all of it), lit by its lights (else by a sun):\n"
+      "direct light, sky, matt surfaces. Ctrl-C leaves no half picture.\n\n"
+      "Examples:\n  gnomon render model.glb -o model.png\n"
+      "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png --samples 32");
+  command->callback(
+      [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }
 
 }  // namespace gnomon::app

@@ -24,7 +24,8 @@ struct Options {
 std::string generator_list() {
   Table table({"name", "default triangles", "fewest"});
   for (const GeneratorInfo& info : generators()) {
-    table.add({std::string(info.name), std::to_string(info.default_triangles), std::to_string(info.min_triangles)});
+    table.add(
+        {std::string(info.name), std::to_string(info.default_triangles), std::to_string(info.min_triangles)});
   }
   std::string out = table.text() + "\n";
   Facts facts;
@@ -65,7 +66,8 @@ int run(const Options& options, Console& console) {
   document["dropped"] = scene.report.dropped();
   document["options"] = {{"name", options.name}, {"triangles", wanted}, {"seed", options.seed}};
   console.print(document);
-  console.print("wrote " + options.file + ": " + std::to_string(scene.triangles.size()) + " triangles, hash " + hash + "\n");
+  console.print("wrote " + options.file + ": " + std::to_string(scene.triangles.size()) +
+                " triangles, hash " + hash + "\n");
   return 0;
 }
 
@@ -76,13 +78,14 @@ void add_scene_command(CLI::App& program, OutputOptions& output, Action& action)
   CLI::App* const command = program.add_subcommand("scene", "Make a scene and write it as a .glb file.");
   command->add_option("name", options->name, "which scene, see --list")->type_name("NAME");
   command->add_flag("--list", options->list, "list the scenes that can be made");
-  CLI::Option* const triangles =
-      add_count(*command, "--triangles", options->triangles, "about so many triangles; 0: the scene's default");
+  CLI::Option* const triangles = add_count(*command, "--triangles", options->triangles,
+                                           "about so many triangles; 0: the scene's default");
   add_count(*command, "--seed", options->seed, "another seed, another scene of its kind");
   command->add_option("-o,--output", options->file, "the .glb file to write")->type_name("FILE");
   add_output_options(*command, output);
-  command->footer("The same name, count and seed give the same file on every machine.\n\n" + generator_list() +
-                  "\nExamples:\n  gnomon scene city --triangles 1M --seed 7 -o city.glb\n  gnomon scene --list");
+  command->footer(
+      "The same name, count and seed give the same file on every machine.\n\n" + generator_list() +
+      "\nExamples:\n  gnomon scene city --triangles 1M --seed 7 -o city.glb\n  gnomon scene --list");
   command->callback([&action, options, triangles] {
     options->triangles_given = triangles->count() > 0 && options->triangles > 0;
     action = [options](Console& console) { return run(*options, console); };

@@ -27,12 +27,14 @@ std::vector<std::string> split(std::string_view text, char separator) {
 std::uint64_t count_or_throw(const std::string& text, const std::string& source) {
   if (const auto count = parse_count(text)) return *count;
   throw Error(ErrorCode::kInvalidArgument,
-              "\"" + text + "\" in " + source + " is not a count; write gen:NAME[:TRIANGLES[:SEED]], as in gen:city:50k:7");
+              "\"" + text + "\" in " + source +
+                  " is not a count; write gen:NAME[:TRIANGLES[:SEED]], as in gen:city:50k:7");
 }
 
 Scene generate(const std::string& source) {
   const auto parts = split(std::string_view(source).substr(kGenerated.size()), ':');
-  if (parts.size() > 3) throw Error(ErrorCode::kInvalidArgument, source + ": write gen:NAME[:TRIANGLES[:SEED]]");
+  if (parts.size() > 3)
+    throw Error(ErrorCode::kInvalidArgument, source + ": write gen:NAME[:TRIANGLES[:SEED]]");
   const std::uint64_t triangles =
       parts.size() > 1 ? count_or_throw(parts[1], source) : default_triangles(parts.front());
   const std::uint64_t seed = parts.size() > 2 ? count_or_throw(parts[2], source) : 1;
@@ -55,7 +57,8 @@ Scene read(const SceneOptions& options) {
 
 std::uint64_t default_triangles(std::string_view generator) {
   const auto known = generators();
-  const auto found = std::find_if(known.begin(), known.end(), [&](const auto& info) { return info.name == generator; });
+  const auto found =
+      std::find_if(known.begin(), known.end(), [&](const auto& info) { return info.name == generator; });
   return found == known.end() ? 1 : found->default_triangles;
 }
 

@@ -10,13 +10,13 @@
 
 namespace gnomon::app {
 
-// Reads the file, or makes the scene that gen:NAME[:TRIANGLES[:SEED]] describes (seed 1 by default). Notes on stderr
-// say what was dropped or assumed. Throws Error: kBadScene (also for a file that cannot be read), kInvalidArgument (a
-// gen: that makes no sense), kOutOfMemory, kCancelled.
+// Reads the file, or makes the scene that gen:NAME[:TRIANGLES[:SEED]] describes (seed 1 by default). Notes on
+// stderr say what was dropped or assumed. Throws Error: kBadScene (also for a file that cannot be read),
+// kInvalidArgument (a gen: that makes no sense), kOutOfMemory, kCancelled.
 [[nodiscard]] Scene load_scene(const SceneOptions& options, Console& console);
 
-// How many triangles a generator makes when nobody says; 1 for a name there is none of (generate_scene then lists
-// those there are).
+// How many triangles a generator makes when nobody says; 1 for a name there is none of (generate_scene then
+// lists those there are).
 [[nodiscard]] std::uint64_t default_triangles(std::string_view generator);
 
 }  // namespace gnomon::app

@@ -5,7 +5,8 @@
 namespace gnomon::app {
 namespace {
 
-void append_row(std::string& out, const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) {
+void append_row(std::string& out, const std::vector<std::string>& cells,
+                const std::vector<std::size_t>& widths) {
   std::string line;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::string blanks(widths[i] - cells[i].size(), ' ');
@@ -33,7 +34,8 @@ std::string Facts::text() const {
   std::size_t width = 0;
   for (const auto& [name, value] : pairs_) width = std::max(width, name.size());
   std::string out;
-  for (const auto& [name, value] : pairs_) out += name + std::string(width - name.size() + 2, ' ') + value + "\n";
+  for (const auto& [name, value] : pairs_)
+    out += name + std::string(width - name.size() + 2, ' ') + value + "\n";
   return out;
 }
 

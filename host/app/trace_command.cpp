@@ -36,10 +36,11 @@ bool wants_any_hit(const Options& options) {
   return options.hits_out.empty() && options.rays_in.empty() && asks_any_hit(*ray_kind_from(options.kind));
 }
 
-std::vector<Ray> rays_of(const Options& options, const Scene& scene, const cl::Context& context, const DeviceBvh& tree,
-                         const Progress& progress) {
+std::vector<Ray> rays_of(const Options& options, const Scene& scene, const cl::Context& context,
+                         const DeviceBvh& tree, const Progress& progress) {
   if (options.rays_in.empty()) {
-    return make_rays(*ray_kind_from(options.kind), scene, Tracer(context, tree), options.count, options.seed, progress);
+    return make_rays(*ray_kind_from(options.kind), scene, Tracer(context, tree), options.count, options.seed,
+                     progress);
   }
   try {
     return read_rays(options.rays_in);
@@ -49,7 +50,8 @@ std::vector<Ray> rays_of(const Options& options, const Scene& scene, const cl::C
   }
 }
 
-void add_trace(Json& document, const Options& options, const TimedTrace& trace, std::size_t rays, bool any_hit) {
+void add_trace(Json& document, const Options& options, const TimedTrace& trace, std::size_t rays,
+               bool any_hit) {
   Json& chosen = document["options"];
   chosen["rays"] = options.rays_in.empty() ? Json(options.kind) : Json(nullptr);
   chosen["rays_in"] = options.rays_in.empty() ? Json(nullptr) : Json(options.rays_in);
@@ -68,20 +70,23 @@ void add_trace(Json& document, const Options& options, const TimedTrace& trace, 
   document["triangles_per_ray"] = trace.triangles_per_ray;
 }
 
-std::string facts_of(const Options& options, const cl::DeviceInfo& device, const Scene& scene, const TimedBuild& build,
-                     const TimedTrace& trace, std::size_t rays, bool any_hit) {
-  const double share = rays == 0 ? 0.0 : 100.0 * static_cast<double>(trace.hit_count) / static_cast<double>(rays);
+std::string facts_of(const Options& options, const cl::DeviceInfo& device, const Scene& scene,
+                     const TimedBuild& build, const TimedTrace& trace, std::size_t rays, bool any_hit) {
+  const double share =
+      rays == 0 ? 0.0 : 100.0 * static_cast<double>(trace.hit_count) / static_cast<double>(rays);
   Facts facts;
   facts.add("device", describe(device));
   facts.add("scene", describe(scene));
   facts.add("tree", describe(build));
-  facts.add("rays", std::to_string(rays) + " " + (options.rays_in.empty() ? options.kind : "from " + options.rays_in) +
-                        ", " + (any_hit ? "any hit" : "closest hit"));
+  facts.add("rays", std::to_string(rays) + " " +
+                        (options.rays_in.empty() ? options.kind : "from " + options.rays_in) + ", " +
+                        (any_hit ? "any hit" : "closest hit"));
   facts.add("hits", std::to_string(trace.hit_count) + " (" + fixed(share, 1) + " %)");
-  if (trace.invalid_rays > 0) facts.add("invalid", std::to_string(trace.invalid_rays) + " rays that miss for that");
+  if (trace.invalid_rays > 0)
+    facts.add("invalid", std::to_string(trace.invalid_rays) + " rays that miss for that");
   facts.add("speed", fixed(trace.mrays_per_s.median, 3) + " Mrays/s (median of " +
-                         std::to_string(trace.mrays_per_s.count) + ", " + fixed(trace.mrays_per_s.min, 3) + " to " +
-                         fixed(trace.mrays_per_s.max, 3) + "; " +
+                         std::to_string(trace.mrays_per_s.count) + ", " + fixed(trace.mrays_per_s.min, 3) +
+                         " to " + fixed(trace.mrays_per_s.max, 3) + "; " +
                          (trace.device_clock ? "device time)" : "wall clock, transfers included)"));
   facts.add("work", fixed(trace.boxes_per_ray, 2) + " boxes and " + fixed(trace.triangles_per_ray, 2) +
                         " triangles a ray");
@@ -96,7 +101,8 @@ int run(const Options& options, Console& console) {
   const TimedBuild build = build_timed(context, scene, options.build, {1, true}, console.progress());
   const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
   stop_if_interrupted();
-  const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, options.repeat, console.progress());
+  const TimedTrace trace =
+      trace_timed(context, build.tree, rays, any_hit, options.repeat, console.progress());
   stop_if_interrupted();
   if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
   if (!options.hits_out.empty()) write_hits(options.hits_out, trace.hits);
@@ -114,8 +120,10 @@ int run(const Options& options, Console& console) {
 const char* const kFiles =
     "Files hold raw little-endian records and nothing else:\n"
     "  a ray, 32 bytes: origin x y z, tmin, direction x y z, tmax, all float32\n"
-    "  a hit, 16 bytes: t, u, v as float32, triangle as uint32; a miss has triangle 0xffffffff and t infinite\n"
-    "The hit of a ray has the ray's place. The point hit is origin + t * direction = (1-u-v) v0 + u v1 + v v2.\n";
+    "  a hit, 16 bytes: t, u, v as float32, triangle as uint32; a miss has triangle 0xffffffff and t "
+    "infinite\n"
+    "The hit of a ray has the ray's place. The point hit is origin + t * direction = (1-u-v) v0 + u v1 + v "
+    "v2.\n";
 
 }  // namespace
 
@@ -134,19 +142,21 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
       ->type_name("FILE");
   command->add_option("--rays-out", options->rays_out, "write the rays traced")->type_name("FILE");
   command->add_option("--hits-out", options->hits_out, "write the closest hits")->type_name("FILE");
-  command->add_option("--query", options->query, "closest or any; default: any for shadow and parallel, else closest")
+  command
+      ->add_option("--query", options->query,
+                   "closest or any; default: any for shadow and parallel, else closest")
       ->check(CLI::IsMember({"closest", "any"}))
       ->type_name("Q");
-  add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")->check(CLI::Range(1, 10000));
+  add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")
+      ->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(explain_ray_kinds() + "\n" + kFiles +
                   "\nExamples:\n  gnomon trace model.glb --rays bounce --count 2M\n"
                   "  gnomon trace model.glb --rays-in my.rays --hits-out my.hits");
-  command->callback([&action, options] {
-    action = [options](Console& console) { return run(*options, console); };
-  });
+  command->callback(
+      [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }
 
 }  // namespace gnomon::app

@@ -6,7 +6,8 @@
 namespace gnomon::app {
 namespace {
 
-TraceResult trace_once(const Tracer& tracer, std::span<const Ray> rays, bool any_hit, const Progress& progress) {
+TraceResult trace_once(const Tracer& tracer, std::span<const Ray> rays, bool any_hit,
+                       const Progress& progress) {
   return any_hit ? tracer.any(rays, progress) : tracer.closest(rays, progress);
 }
 
@@ -32,8 +33,8 @@ void count_work(TimedTrace& timed, const TraceResult& counted) {
 
 }  // namespace
 
-TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::span<const Ray> rays, bool any_hit,
-                       std::uint64_t repeat, const Progress& progress) {
+TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::span<const Ray> rays,
+                       bool any_hit, std::uint64_t repeat, const Progress& progress) {
   const Tracer tracer(context, tree);
   TimedTrace timed;
   TraceResult last = trace_once(tracer, rays, any_hit, progress);
@@ -41,14 +42,17 @@ TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::s
   for (std::uint64_t i = 0; i < repeat; ++i) {
     const auto start = std::chrono::steady_clock::now();
     last = trace_once(tracer, rays, any_hit, progress);
-    timed.wall_seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    timed.wall_seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     device_seconds.push_back(1e-3 * last.kernel_ms);
   }
   // Some drivers report no event times, or zeros.
-  timed.device_clock = std::all_of(device_seconds.begin(), device_seconds.end(), [](double s) { return s > 0.0; });
+  timed.device_clock =
+      std::all_of(device_seconds.begin(), device_seconds.end(), [](double s) { return s > 0.0; });
   timed.seconds = timed.device_clock ? device_seconds : timed.wall_seconds;
   std::vector<double> speeds;
-  for (const double seconds : timed.seconds) speeds.push_back(1e-6 * static_cast<double>(rays.size()) / seconds);
+  for (const double seconds : timed.seconds)
+    speeds.push_back(1e-6 * static_cast<double>(rays.size()) / seconds);
   timed.mrays_per_s = spread_of(speeds);
   timed.hit_count = count_hits(last);
   timed.invalid_rays = last.invalid_rays;

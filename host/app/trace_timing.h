@@ -11,19 +11,20 @@
 namespace gnomon::app {
 
 struct TimedTrace {
-  std::vector<Hit> hits;               // closest hits; empty for any-hit queries
+  std::vector<Hit> hits;  // closest hits; empty for any-hit queries
   std::uint64_t hit_count = 0;
   std::uint64_t invalid_rays = 0;
-  bool device_clock = false;           // seconds are device event times; else wall clock, transfers included
-  std::vector<double> seconds;         // one per timed pass
+  bool device_clock = false;    // seconds are device event times; else wall clock, transfers included
+  std::vector<double> seconds;  // one per timed pass
   std::vector<double> wall_seconds;
   Spread mrays_per_s;
-  double boxes_per_ray = 0.0;          // from a pass of its own with counters compiled in
+  double boxes_per_ray = 0.0;  // from a pass of its own with counters compiled in
   double triangles_per_ray = 0.0;
 };
 
 // One pass to warm up, `repeat` timed ones, one that counts. Throws as Tracer.
-[[nodiscard]] TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::span<const Ray> rays,
-                                     bool any_hit, std::uint64_t repeat, const Progress& progress);
+[[nodiscard]] TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree,
+                                     std::span<const Ray> rays, bool any_hit, std::uint64_t repeat,
+                                     const Progress& progress);
 
 }  // namespace gnomon::app

@@ -23,7 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t kReferenceLimit = 200'000;  // triangles the reference builder takes without being asked
+constexpr std::uint64_t kReferenceLimit =
+    200'000;  // triangles the reference builder takes without being asked
 
 struct Options {
   SceneOptions scene;
@@ -72,7 +73,8 @@ void check_rays(Findings& findings, const Options& options, const Scene& scene, 
   const auto names = ray_kind_names();
   double seconds_left = options.budget_seconds;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto rays = make_rays(*ray_kind_from(names[i]), scene, tracer, options.count, options.seed, progress);
+    const auto rays =
+        make_rays(*ray_kind_from(names[i]), scene, tracer, options.count, options.seed, progress);
     const TraceResult closest = tracer.closest(rays, progress);
     const TraceResult any = tracer.any(rays, progress);
     const double share = std::max(0.0, seconds_left) / static_cast<double>(names.size() - i);
@@ -80,7 +82,8 @@ void check_rays(Findings& findings, const Options& options, const Scene& scene, 
     oracle.max_rays = options.max_rays;
     oracle.time_budget = std::chrono::milliseconds(std::llround(1e3 * share));
     const auto start = Clock::now();
-    findings.kinds.push_back({names[i], judge(scene.triangles, rays, closest.hits, any.occluded, oracle, progress)});
+    findings.kinds.push_back(
+        {names[i], judge(scene.triangles, rays, closest.hits, any.occluded, oracle, progress)});
     seconds_left -= std::chrono::duration<double>(Clock::now() - start).count();
   }
 }
@@ -119,12 +122,13 @@ void add_findings(Json& document, const Options& options, const Findings& findin
 }
 
 std::string kind_table(const Findings& findings) {
-  Table table({"kind", "rays", "judged", "lost", "false", "wrong", "any/closest", "ties", "max t error (ulp)"});
+  Table table(
+      {"kind", "rays", "judged", "lost", "false", "wrong", "any/closest", "ties", "max t error (ulp)"});
   for (const KindReport& kind : findings.kinds) {
     const OracleReport& o = kind.oracle;
     table.add({kind.kind, std::to_string(o.rays_given), std::to_string(o.rays_judged), std::to_string(o.lost),
-               std::to_string(o.false_hits), std::to_string(o.wrong_primitive), std::to_string(o.any_closest_disagree),
-               std::to_string(o.ties), fixed(o.max_t_error_ulp, 2)});
+               std::to_string(o.false_hits), std::to_string(o.wrong_primitive),
+               std::to_string(o.any_closest_disagree), std::to_string(o.ties), fixed(o.max_t_error_ulp, 2)});
   }
   return table.text();
 }
@@ -137,7 +141,8 @@ std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const Tim
   facts.add("tree", describe(build));
   facts.add("invariants", findings.fault ? "BROKEN: " + findings.fault->what : "hold");
   if (findings.reference_hash) {
-    facts.add("reference", findings.tree_differs ? "DIFFERS: hash " + *findings.reference_hash : "the same tree");
+    facts.add("reference",
+              findings.tree_differs ? "DIFFERS: hash " + *findings.reference_hash : "the same tree");
   } else {
     facts.add("reference", "not built for so many triangles; --reference asks for it");
   }
@@ -160,11 +165,13 @@ int run(const Options& options, Console& console) {
   check_rays(findings, options, scene, Tracer(context, build.tree), console.progress());
   stop_if_interrupted();
   if (findings.judged() == 0) {
-    throw Error(ErrorCode::kDevice, "no ray was judged, so nothing is known; give more --count, --max-rays or --budget");
+    throw Error(ErrorCode::kDevice,
+                "no ray was judged, so nothing is known; give more --count, --max-rays or --budget");
   }
   for (const KindReport& kind : findings.kinds) {
     if (!kind.oracle.budget_exhausted) continue;
-    console.note(kind.kind + ": time for " + std::to_string(kind.oracle.rays_judged) + " rays only; --budget gives more");
+    console.note(kind.kind + ": time for " + std::to_string(kind.oracle.rays_judged) +
+                 " rays only; --budget gives more");
   }
   Json document = start_document("validate");
   add_device(document, &context.device());
@@ -193,20 +200,24 @@ void add_validate_command(CLI::App& program, OutputOptions& output, Action& acti
       ->check(CLI::Range(1e-3, 1e6))
       ->type_name("S")
       ->capture_default_str();
-  command->add_flag("--reference", options->reference, "build with the reference builder too, however large the scene");
+  command->add_flag("--reference", options->reference,
+                    "build with the reference builder too, however large the scene");
   add_build_options(*command, options->build);
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(
-      "Rays of every kind are traced for the closest and for any hit. The oracle tests each judged ray against all\n"
-      "triangles with exact edge signs: lost and false hits, wrong triangles (ties apart: another triangle just as\n"
-      "near), and answers where any and closest disagree are mismatches. So are broken invariants of the tree, and\n"
-      "up to 200000 triangles any bit that differs from the reference builder's tree. Exit status 6 for a mismatch.\n\n" +
+      "Rays of every kind are traced for the closest and for any hit. The oracle tests each judged ray "
+      "against all\n"
+      "triangles with exact edge signs: lost and false hits, wrong triangles (ties apart: another triangle "
+      "just as\n"
+      "near), and answers where any and closest disagree are mismatches. So are broken invariants of the "
+      "tree, and\n"
+      "up to 200000 triangles any bit that differs from the reference builder's tree. Exit status 6 for a "
+      "mismatch.\n\n" +
       explain_ray_kinds() +
       "\nExamples:\n  gnomon validate model.glb\n  gnomon validate gen:city:1M --budget 120 --max-rays 10k");
-  command->callback([&action, options] {
-    action = [options](Console& console) { return run(*options, console); };
-  });
+  command->callback(
+      [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }
 
 }  // namespace gnomon::app

@@ -4,7 +4,11 @@
 
 namespace gnomon::app {
 
-std::string version() { return GNOMON_VERSION; }
-std::string commit() { return GNOMON_COMMIT; }
+std::string version() {
+  return GNOMON_VERSION;
+}
+std::string commit() {
+  return GNOMON_COMMIT;
+}
 
 }  // namespace gnomon::app

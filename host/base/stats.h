@@ -1,4 +1,5 @@
-// Median and spread of repeated measurements. Not for sums over rays or nodes. Feeds the command line and benches.
+// Median and spread of repeated measurements. Not for sums over rays or nodes. Feeds the command line and
+// benches.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +29,8 @@ struct Spread {
 [[nodiscard]] inline std::size_t median_index(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
   return order.empty() ? 0 : order[(order.size() - 1) / 2];
 }
 

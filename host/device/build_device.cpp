@@ -14,10 +14,6 @@ namespace gnomon {
 
 namespace {
 
-constexpr std::size_t kItemsPerGroup = 64;  // of kernels with one work-item per element
-
-std::size_t rounded_up(std::size_t items) { return (items + kItemsPerGroup - 1) / kItemsPerGroup * kItemsPerGroup; }
-
 const std::vector<std::string> kSources = {"prepare.cl", "large.cl", "subtree.cl", "compact.cl"};
 
 // One build in progress: buffers, kernels, and the passes in order.
@@ -68,6 +64,13 @@ class DeviceBuilder {
   template <typename... Arguments>
   void launch_groups(const char* stage, const char* kernel_name, std::size_t groups, const Arguments&... arguments) {
     launch(stage, kernel_name, groups * plan_.work_group_size, plan_.work_group_size, arguments...);
+  }
+
+  // One work-item per element; the kernel ignores those past the end.
+  template <typename... Arguments>
+  void launch_items(const char* stage, const char* kernel_name, std::size_t items, const Arguments&... arguments) {
+    const std::size_t local = plan_.item_group_size;
+    launch(stage, kernel_name, (items + local - 1) / local * local, local, arguments...);
   }
 
   // Boxes and root bounds; the root is the first large node, or the only subtree.
@@ -122,8 +125,7 @@ class DeviceBuilder {
       const cl::Buffer slots = context_.create_buffer("large_slots", count * sizeof(std::uint32_t));
       context_.upload_values<Node>(nodes, large.nodes);
       context_.upload_values<std::uint32_t>(slots, large.slots);
-      launch("compact", "enter_large_nodes", rounded_up(count), kItemsPerGroup, nodes, slots, sparse_nodes_,
-             inner_rank_, count);
+      launch_items("compact", "enter_large_nodes", count, nodes, slots, sparse_nodes_, inner_rank_, count);
     }
     depth_ = context_.download_values<std::uint32_t>(max_depth, 1).front();
   }
@@ -140,10 +142,8 @@ class DeviceBuilder {
     tree.max_depth = depth_;
     tree.nodes = context_.create_buffer("nodes", tree.node_count * sizeof(Node));
     tree.leaf_triangles = allocate("leaf_triangles");
-    launch("compact", "emit_nodes", rounded_up(plan_.count), kItemsPerGroup, sparse_nodes_, inner_rank_, tree.nodes,
-           plan_.count);
-    launch("gather", "gather_triangles", rounded_up(plan_.count), kItemsPerGroup, triangles_, order_,
-           tree.leaf_triangles, plan_.count);
+    launch_items("compact", "emit_nodes", plan_.count, sparse_nodes_, inner_rank_, tree.nodes, plan_.count);
+    launch_items("gather", "gather_triangles", plan_.count, triangles_, order_, tree.leaf_triangles, plan_.count);
     tree.order = std::move(order_);
     return tree;
   }

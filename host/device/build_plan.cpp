@@ -74,6 +74,7 @@ BuildPlan plan_build(const cl::DeviceInfo& device, std::uint64_t count, const Bu
                                                  device.name + " allows at most " + std::to_string(widest));
   }
   plan.work_group_size = std::min(wanted, widest);
+  plan.item_group_size = std::min(64U, widest);
   const bool serial = plan.work_group_size == 1;
   const std::uint32_t subtree = serial ? serial_subtree_size(device, count) : 1024;
   // Large nodes must hold more than a leaf may, so that they always divide.

@@ -34,21 +34,23 @@ unsigned levels_for(std::uint32_t samples) {
   return static_cast<unsigned>(std::clamp(std::lround(levels), 0L, 5L));
 }
 
-// How much two pixels see the same smooth surface: normals agree, and neither lies off the other's plane, seen from
-// each other. Has no unit of length.
+// How much two pixels see the same smooth surface: normals agree, and neither lies off the other's plane,
+// seen from each other. Has no unit of length.
 float likeness(const Surface& a, const Surface& b) {
   const float along = glm::dot(a.normal, b.normal);
   if (along <= 0.0F) return 0.0F;
   const glm::vec3 offset = b.position - a.position;
   const float distance = glm::length(offset);
-  const float off_plane = std::max(std::abs(glm::dot(a.normal, offset)), std::abs(glm::dot(b.normal, offset)));
+  const float off_plane =
+      std::max(std::abs(glm::dot(a.normal, offset)), std::abs(glm::dot(b.normal, offset)));
   const float slope = distance > 0.0F ? off_plane / distance : 0.0F;
   return std::exp(-8.0F * slope - 24.0F * (1.0F - along));
 }
 
 constexpr std::array<float, 5> kSpline{0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
 
-glm::vec3 mean_around(const Film& film, const Surfaces& surfaces, std::int64_t x, std::int64_t y, std::int64_t step) {
+glm::vec3 mean_around(const Film& film, const Surfaces& surfaces, std::int64_t x, std::int64_t y,
+                      std::int64_t step) {
   const Surface& centre = surfaces[static_cast<std::size_t>(y * film.width + x)];
   glm::vec3 sum{0.0F};
   float weights = 0.0F;
@@ -59,7 +61,8 @@ glm::vec3 mean_around(const Film& film, const Surfaces& surfaces, std::int64_t x
       if (column < 0 || row < 0 || column >= film.width || row >= film.height) continue;
       const Surface& other = surfaces[static_cast<std::size_t>(row * film.width + column)];
       if (!other.seen) continue;
-      const float spline = kSpline[static_cast<std::size_t>(i + 2)] * kSpline[static_cast<std::size_t>(j + 2)];
+      const float spline =
+          kSpline[static_cast<std::size_t>(i + 2)] * kSpline[static_cast<std::size_t>(j + 2)];
       const float weight = spline * likeness(centre, other);
       sum += weight * other.soft;
       weights += weight;
@@ -68,9 +71,10 @@ glm::vec3 mean_around(const Film& film, const Surfaces& surfaces, std::int64_t x
   return weights > 0.0F ? sum / weights : centre.soft;
 }
 
-void smooth(const Film& film, Surfaces& surfaces, std::int64_t step) {
+void smooth(const Film& film, Surfaces& surfaces, std::int64_t step, const Progress& progress) {
   std::vector<glm::vec3> smoothed(surfaces.size());
   for (std::int64_t y = 0; y < film.height; ++y) {
+    report(progress, "smooth", static_cast<double>(y) / film.height);
     for (std::int64_t x = 0; x < film.width; ++x) {
       const auto i = static_cast<std::size_t>(y * film.width + x);
       if (surfaces[i].seen) smoothed[i] = mean_around(film, surfaces, x, y, step);
@@ -81,9 +85,10 @@ void smooth(const Film& film, Surfaces& surfaces, std::int64_t step) {
 
 }  // namespace
 
-Picture develop(const Film& film, std::uint32_t samples) {
+Picture develop(const Film& film, std::uint32_t samples, const Progress& progress) {
   Surfaces surfaces = surfaces_of(film);
-  for (unsigned level = 0; level < levels_for(samples); ++level) smooth(film, surfaces, std::int64_t{1} << level);
+  for (unsigned level = 0; level < levels_for(samples); ++level)
+    smooth(film, surfaces, std::int64_t{1} << level, progress);
   Picture picture{film.width, film.height, std::vector<Vec3>(film.pixels.size())};
   for (std::size_t i = 0; i < film.pixels.size(); ++i) {
     const glm::vec3 sum = film.pixels[i].direct + film.pixels[i].albedo * surfaces[i].soft;

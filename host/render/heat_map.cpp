@@ -56,7 +56,8 @@ HeatScale heat_scale(std::span<const float> values) {
   return scale;
 }
 
-RgbImage heat_map(std::uint32_t width, std::uint32_t height, std::span<const float> values, const HeatScale& scale) {
+RgbImage heat_map(std::uint32_t width, std::uint32_t height, std::span<const float> values,
+                  const HeatScale& scale) {
   constexpr std::size_t kSteps = 1024;
   std::array<std::array<std::uint8_t, 3>, kSteps> table{};
   for (std::size_t i = 0; i < kSteps; ++i) table[i] = heat_color(static_cast<double>(i) / (kSteps - 1));

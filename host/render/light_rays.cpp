@@ -22,10 +22,12 @@ std::uint32_t LightRays::rounds() const {
   return static_cast<std::uint32_t>(std::min<std::size_t>(kMostRounds, lights_.size()));
 }
 
-std::optional<LightSample> LightRays::sample(const Place& place, std::uint32_t round, std::uint32_t purpose) const {
+std::optional<LightSample> LightRays::sample(const Place& place, std::uint32_t round,
+                                             std::uint32_t purpose) const {
   std::size_t light = round;
   if (rounds() < lights_.size()) {
-    const double choice = (place.random(seed_, purpose).x + round) / rounds() * static_cast<double>(lights_.size());
+    const double choice =
+        (place.random(seed_, purpose).x + round) / rounds() * static_cast<double>(lights_.size());
     light = std::min(static_cast<std::size_t>(choice), lights_.size() - 1);
   }
   const Point2 point = lights_.is_area(light) ? place.random(seed_, purpose + 1) : Point2{0.0};

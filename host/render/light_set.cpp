@@ -22,13 +22,16 @@ Light default_sun() {
   return sun;
 }
 
-double squared(double x) { return x * x; }
+double squared(double x) {
+  return x * x;
+}
 
 // KHR_lights_punctual's recommended window on the inverse square.
 double falloff(const Light& light, double distance) {
   const double inverse_square = 1.0 / std::max(squared(distance), 1e-20);
   if (light.range <= 0.0F) return inverse_square;
-  return inverse_square * std::clamp(1.0 - squared(squared(distance / static_cast<double>(light.range))), 0.0, 1.0);
+  return inverse_square *
+         std::clamp(1.0 - squared(squared(distance / static_cast<double>(light.range))), 0.0, 1.0);
 }
 
 // And its smooth edge of a spot's cone.
@@ -47,7 +50,8 @@ Point doubled_area_normal(const Triangle& t) {
 }  // namespace
 
 LightSet::LightSet(const Scene& scene, const Bounds& bounds) : triangles_(scene.triangles) {
-  const double diagonal = scene.triangles.empty() ? 1.0 : glm::length(to_point(bounds.hi) - to_point(bounds.lo));
+  const double diagonal =
+      scene.triangles.empty() ? 1.0 : glm::length(to_point(bounds.hi) - to_point(bounds.lo));
   reach_ = kFairWay * std::max(diagonal, 1e-20);
   for (const Light& light : scene.lights) {
     Emitter emitter{light, {}};
@@ -92,8 +96,8 @@ Point LightSet::point_on(const Emitter& emitter, const Point2& sample, Point& no
   return (1.0 - root) * to_point(t.v0) + b1 * to_point(t.v1) + (root - b1) * to_point(t.v2);
 }
 
-std::optional<LightSample> LightSet::sample(std::size_t light_index, const Point& position, const Point& normal,
-                                            const Point2& sample) const {
+std::optional<LightSample> LightSet::sample(std::size_t light_index, const Point& position,
+                                            const Point& normal, const Point2& sample) const {
   const Emitter& emitter = emitters_[light_index];
   const Light& light = emitter.light;
   const Point color = to_point(light.color);
@@ -105,7 +109,8 @@ std::optional<LightSample> LightSet::sample(std::size_t light_index, const Point
   }
   Point light_normal{0.0};
   const bool is_area = light.kind == LightKind::kArea;
-  const Point offset = (is_area ? point_on(emitter, sample, light_normal) : to_point(light.position)) - position;
+  const Point offset =
+      (is_area ? point_on(emitter, sample, light_normal) : to_point(light.position)) - position;
   const double distance = glm::length(offset);
   const Point direction = offset / distance;
   const double slope = glm::dot(direction, normal);

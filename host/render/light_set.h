@@ -13,9 +13,9 @@ namespace gnomon {
 
 // Light that would reach a point if nothing were in between.
 struct LightSample {
-  Point direction;     // unit, towards the light
-  double distance;     // infinite for the sun
-  Point irradiance;    // on the surface, its slope included
+  Point direction;   // unit, towards the light
+  double distance;   // infinite for the sun
+  Point irradiance;  // on the surface, its slope included
 };
 
 class LightSet {
@@ -24,17 +24,19 @@ class LightSet {
   LightSet(const Scene& scene, const Bounds& bounds);
 
   [[nodiscard]] std::size_t size() const { return emitters_.size(); }
-  [[nodiscard]] bool is_area(std::size_t light) const { return emitters_[light].light.kind == LightKind::kArea; }
+  [[nodiscard]] bool is_area(std::size_t light) const {
+    return emitters_[light].light.kind == LightKind::kArea;
+  }
   // What was assumed, for the user; empty when nothing was.
   [[nodiscard]] const std::string& note() const { return note_; }
   // How bright the sky should be beside these lights: a share of what they give a surface a fair way off.
   [[nodiscard]] double sky_level() const;
 
-  // Light from one of them at a point of a surface with this unit normal: point and spot fall off with the squared
-  // distance (and range, cone: KHR_lights_punctual), area lights shine from a point that `sample` picks, to both
-  // sides. Nothing if the light is behind the surface or does not reach it.
-  [[nodiscard]] std::optional<LightSample> sample(std::size_t light, const Point& position, const Point& normal,
-                                                  const Point2& sample) const;
+  // Light from one of them at a point of a surface with this unit normal: point and spot fall off with the
+  // squared distance (and range, cone: KHR_lights_punctual), area lights shine from a point that `sample`
+  // picks, to both sides. Nothing if the light is behind the surface or does not reach it.
+  [[nodiscard]] std::optional<LightSample> sample(std::size_t light, const Point& position,
+                                                  const Point& normal, const Point2& sample) const;
 
  private:
   struct Emitter {

@@ -1,5 +1,5 @@
-// Pictures as values: linear ones as light adds up, and the bytes a screen shows. Not for making them (render.h).
-// Feeds all of host/render and the command line.
+// Pictures as values: linear ones as light adds up, and the bytes a screen shows. Not for making them
+// (render.h). Feeds all of host/render and the command line.
 #pragma once
 
 #include <cstddef>

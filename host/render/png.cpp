@@ -31,12 +31,14 @@ void append(void* context, void* data, int size) noexcept {
 std::vector<std::byte> encode_png(const RgbImage& image) {
   Sink sink;
   const auto width = static_cast<int>(image.width);
-  const int done = stbi_write_png_to_func(append, &sink, width, static_cast<int>(image.height), 3, image.bytes.data(),
-                                          3 * width);
+  const int done = stbi_write_png_to_func(append, &sink, width, static_cast<int>(image.height), 3,
+                                          image.bytes.data(), 3 * width);
   if (done == 0 || sink.full) throw Error(ErrorCode::kOutOfMemory, "no memory to encode the picture");
   return std::move(sink.bytes);
 }
 
-void write_png(const RgbImage& image, const std::filesystem::path& file) { write_file(file, encode_png(image)); }
+void write_png(const RgbImage& image, const std::filesystem::path& file) {
+  write_file(file, encode_png(image));
+}
 
 }  // namespace gnomon

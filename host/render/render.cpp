@@ -14,8 +14,8 @@ namespace gnomon {
 namespace {
 
 constexpr std::uint32_t kTileRays = 1U << 18U;  // camera rays traced at a time
-constexpr double kOffset = 1e-5;                // of rays' origins off a surface, in diagonals, as in ray_set.h
-constexpr double kOpenness = 0.03;              // diagonals at which a surface opposite halves what bounced often
+constexpr double kOffset = 1e-5;    // of rays' origins off a surface, in diagonals, as in ray_set.h
+constexpr double kOpenness = 0.03;  // diagonals at which a surface opposite halves what bounced often
 
 struct Tile {
   std::uint32_t x, y, width, height;
@@ -30,7 +30,8 @@ Progress part_of(const Progress& whole, double first, double last) {
 
 class Renderer {
  public:
-  Renderer(const cl::Context& context, const DeviceBvh& tree, const Scene& scene, const RenderOptions& options)
+  Renderer(const cl::Context& context, const DeviceBvh& tree, const Scene& scene,
+           const RenderOptions& options)
       : scene_(scene),
         options_(options),
         tracer_(context, tree),
@@ -49,15 +50,18 @@ class Renderer {
     const Bounds bounds = bounds_of(scene);
     if (!scene.triangles.empty()) diagonal_ = glm::length(to_point(bounds.hi) - to_point(bounds.lo));
     if (!lights_.note().empty()) result_.notes.push_back(lights_.note());
-    if (scene.cameras.empty()) result_.notes.emplace_back("the scene has no camera: a default one sees all of it");
+    if (scene.cameras.empty())
+      result_.notes.emplace_back("the scene has no camera: a default one sees all of it");
   }
 
   RenderResult run(const Progress& progress) {
     const std::vector<Tile> tiles = cut_tiles();
-    const auto share = [&](std::size_t tile) { return static_cast<double>(tile) / static_cast<double>(tiles.size()); };
-    for (std::size_t i = 0; i < tiles.size(); ++i) render_tile(tiles[i], part_of(progress, share(i), share(i + 1)));
-    report(progress, "render", 1.0);
-    result_.picture = develop(film_, options_.samples);
+    const auto share = [&](std::size_t tile) {
+      return static_cast<double>(tile) / static_cast<double>(tiles.size());
+    };
+    for (std::size_t i = 0; i < tiles.size(); ++i)
+      render_tile(tiles[i], part_of(progress, share(i), share(i + 1)));
+    result_.picture = develop(film_, options_.samples, progress);
     for (const FilmPixel& pixel : film_.pixels) {
       result_.coverage.push_back(pixel.hits / static_cast<float>(options_.samples));
     }
@@ -135,7 +139,8 @@ class Renderer {
     return scene_.materials[scene_.material_ids[hit.primitive]];
   }
 
-  [[nodiscard]] Place place_of(const Ray& ray, const Hit& hit, std::uint32_t pixel, std::uint32_t sample) const {
+  [[nodiscard]] Place place_of(const Ray& ray, const Hit& hit, std::uint32_t pixel,
+                               std::uint32_t sample) const {
     const Triangle& t = scene_.triangles[hit.primitive];
     const Point v0 = to_point(t.v0);
     const Point e1 = to_point(t.v1) - v0;
@@ -145,11 +150,12 @@ class Renderer {
     normal = length > 0.0 ? normal / length : -to_point(ray.direction);
     if (glm::dot(normal, to_point(ray.direction)) > 0.0) normal = -normal;
     const Point surface = v0 + static_cast<double>(hit.u) * e1 + static_cast<double>(hit.v) * e2;
-    return {surface + kOffset * diagonal_ * normal, normal, to_point(material_of(hit).base_color), pixel, sample};
+    return {surface + kOffset * diagonal_ * normal, normal, to_point(material_of(hit).base_color), pixel,
+            sample};
   }
 
-  // One ray a place, cosine-weighted: into the sky, or to a place opposite, which is returned. What reaches that one
-  // after more bounces is a guess, less where it is near (Zhukov et al. 1998, obscurances).
+  // One ray a place, cosine-weighted: into the sky, or to a place opposite, which is returned. What reaches
+  // that one after more bounces is a guess, less where it is near (Zhukov et al. 1998, obscurances).
   [[nodiscard]] std::vector<Place> trace_ambient(const std::vector<Place>& places) {
     std::vector<Ray> rays;
     rays.reserve(places.size());
@@ -204,8 +210,9 @@ class Renderer {
 
 void require_range(const char* name, std::uint64_t value, std::uint64_t lowest, std::uint64_t highest) {
   if (value >= lowest && value <= highest) return;
-  throw Error(ErrorCode::kInvalidArgument, std::string(name) + " is " + std::to_string(value) + "; it must be " +
-                                               std::to_string(lowest) + " to " + std::to_string(highest));
+  throw Error(ErrorCode::kInvalidArgument, std::string(name) + " is " + std::to_string(value) +
+                                               "; it must be " + std::to_string(lowest) + " to " +
+                                               std::to_string(highest));
 }
 
 }  // namespace

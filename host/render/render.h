@@ -1,6 +1,6 @@
-// A picture of a scene through a tree on a device: camera rays, direct light by shadow rays, a sky, matt surfaces, and
-// light that bounced once. Not a path tracer: what bounced more often is a guess. Feeds the command line; it shows the
-// tree at work, and a leak in it as a speck.
+// A picture of a scene through a tree on a device: camera rays, direct light by shadow rays, a sky, matt
+// surfaces, and light that bounced once. Not a path tracer: what bounced more often is a guess. Feeds the
+// command line; it shows the tree at work, and a leak in it as a speck.
 #pragma once
 
 #include <cstdint>
@@ -14,11 +14,11 @@
 namespace gnomon {
 
 struct RenderOptions {
-  std::uint32_t width = 1280;   // pixels, 1..16384
-  std::uint32_t height = 720;   // width times height up to 2^26
-  std::uint32_t samples = 4;    // camera rays per pixel, 1..4096
-  std::uint64_t seed = 1;       // equal seeds, equal pictures
-  bool heat_map = false;        // also count the boxes each camera ray tests; compiles a second program
+  std::uint32_t width = 1280;  // pixels, 1..16384
+  std::uint32_t height = 720;  // width times height up to 2^26
+  std::uint32_t samples = 4;   // camera rays per pixel, 1..4096
+  std::uint64_t seed = 1;      // equal seeds, equal pictures
+  bool heat_map = false;       // also count the boxes each camera ray tests; compiles a second program
 
   // Throws Error{kInvalidArgument} naming the option, its value and its range.
   void check() const;
@@ -26,18 +26,19 @@ struct RenderOptions {
 
 struct RenderResult {
   Picture picture;
-  std::vector<float> coverage;       // share of each pixel's camera rays that met a surface: weights for auto_exposure
-  std::vector<float> boxes;          // with heat_map: mean boxes tested by a pixel's camera rays
+  std::vector<float>
+      coverage;  // share of each pixel's camera rays that met a surface: weights for auto_exposure
+  std::vector<float> boxes;  // with heat_map: mean boxes tested by a pixel's camera rays
   std::uint64_t camera_rays = 0;
-  std::uint64_t other_rays = 0;      // to lights and for light that bounced
-  double kernel_ms = 0.0;            // of all rays; 0 without profiling
-  std::vector<std::string> notes;    // what was assumed, one sentence each
+  std::uint64_t other_rays = 0;    // to lights and for light that bounced
+  double kernel_ms = 0.0;          // of all rays; 0 without profiling
+  std::vector<std::string> notes;  // what was assumed, one sentence each
 };
 
-// Renders through the scene's first camera, or default_camera(scene). `tree` must be built over scene.triangles.
-// Works in tiles: rays and hits take a bounded amount of memory, the host keeps 64 bytes a pixel. More than eight
-// lights are sampled.
-// Throws Error: kInvalidArgument (options), kOutOfMemory, kDevice, kCancelled.
+// Renders through the scene's first camera, or default_camera(scene). `tree` must be built over
+// scene.triangles. Works in tiles: rays and hits take a bounded amount of memory, the host keeps 64 bytes a
+// pixel. More than eight lights are sampled. Throws Error: kInvalidArgument (options), kOutOfMemory, kDevice,
+// kCancelled.
 [[nodiscard]] RenderResult render(const cl::Context& context, const DeviceBvh& tree, const Scene& scene,
                                   const RenderOptions& options = {}, const Progress& progress = {});
 

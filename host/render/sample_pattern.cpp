@@ -12,7 +12,9 @@ namespace {
 constexpr double kStepX = 0.75487766624669276;
 constexpr double kStepY = 0.56984029099805327;
 
-double fraction(double value) { return value - std::floor(value); }
+double fraction(double value) {
+  return value - std::floor(value);
+}
 
 }  // namespace
 

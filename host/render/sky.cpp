@@ -12,7 +12,9 @@ const Point kGround{0.56, 0.61, 0.66};
 const Point kBounced{0.14, 0.13, 0.12};
 constexpr double kHaze = 0.25;  // height over which ground turns into horizon
 
-Point mix(const Point& a, const Point& b, double share) { return a + share * (b - a); }
+Point mix(const Point& a, const Point& b, double share) {
+  return a + share * (b - a);
+}
 
 }  // namespace
 
@@ -22,6 +24,8 @@ Point Sky::radiance(const Point& direction) const {
   return level_ * mix(kHorizon, kZenith, std::sqrt(std::min(1.0, height)));
 }
 
-Point Sky::bounced() const { return level_ * kBounced; }
+Point Sky::bounced() const {
+  return level_ * kBounced;
+}
 
 }  // namespace gnomon

@@ -7,7 +7,8 @@ namespace gnomon {
 
 class Sky {
  public:
-  // level: radiance near the horizon; the zenith is bluer and darker, the ground below the horizon dim and brown.
+  // level: radiance near the horizon; the zenith is bluer and darker, the ground below the horizon dim and
+  // brown.
   explicit Sky(double level) : level_(level) {}
 
   // Along a unit direction; y is up.

@@ -9,12 +9,14 @@ namespace gnomon {
 namespace {
 
 constexpr double kMiddleGrey = 0.20;
-constexpr double kDarkest = 1e-3;      // of the brightest: darker pixels count as this dark in the mean
-constexpr double kBrightShare = 0.9;   // of the pixels, all but the tenth that may blow out
-constexpr double kBrightLimit = 1.1;   // where those should stay below, after exposure
-constexpr float kCounts = 0.5F;        // weight from which a pixel counts
+constexpr double kDarkest = 1e-3;     // of the brightest: darker pixels count as this dark in the mean
+constexpr double kBrightShare = 0.9;  // of the pixels, all but the tenth that may blow out
+constexpr double kBrightLimit = 1.1;  // where those should stay below, after exposure
+constexpr float kCounts = 0.5F;       // weight from which a pixel counts
 
-double filmic(double x) { return std::min(1.0, x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)); }
+double filmic(double x) {
+  return std::min(1.0, x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14));
+}
 
 double luminance_of(const Vec3& pixel) {
   const double value = luminance(to_point(pixel));
@@ -30,7 +32,8 @@ std::uint8_t to_srgb_byte(double linear) {
 }
 
 double auto_exposure(const Picture& picture, std::span<const float> weights) {
-  const bool weighted = std::any_of(weights.begin(), weights.end(), [](float weight) { return weight > 0.0F; });
+  const bool weighted =
+      std::any_of(weights.begin(), weights.end(), [](float weight) { return weight > 0.0F; });
   std::vector<double> counted;
   for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
     if (!weighted || weights[i] > kCounts) counted.push_back(luminance_of(picture.pixels[i]));
@@ -41,7 +44,8 @@ double auto_exposure(const Picture& picture, std::span<const float> weights) {
   double sum = 0.0;
   for (const double value : counted) sum += std::log(std::max(value, kDarkest * brightest));
   const double by_mean = kMiddleGrey / std::exp(sum / static_cast<double>(counted.size()));
-  const auto bright = counted.begin() + static_cast<std::ptrdiff_t>(kBrightShare * static_cast<double>(counted.size() - 1));
+  const auto bright =
+      counted.begin() + static_cast<std::ptrdiff_t>(kBrightShare * static_cast<double>(counted.size() - 1));
   std::nth_element(counted.begin(), bright, counted.end());
   return *bright > 0.0 ? std::min(by_mean, kBrightLimit / *bright) : by_mean;
 }

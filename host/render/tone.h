@@ -7,8 +7,9 @@
 
 namespace gnomon {
 
-// The factor that brings the logarithmic mean luminance to a middle grey, or less where more than a tenth of the pixels
-// would blow out; 1 for a black picture. Pixels whose weight is above a half count; without weights all do.
+// The factor that brings the logarithmic mean luminance to a middle grey, or less where more than a tenth of
+// the pixels would blow out; 1 for a black picture. Pixels whose weight is above a half count; without
+// weights all do.
 [[nodiscard]] double auto_exposure(const Picture& picture, std::span<const float> weights = {});
 
 // Times exposure, through a filmic curve (Narkowicz 2015, a fit to ACES) on each channel, to sRGB.

@@ -1,4 +1,5 @@
-// The vector type of the picture's arithmetic and its way from and to the scene's. Feeds the files of host/render.
+// The vector type of the picture's arithmetic and its way from and to the scene's. Feeds the files of
+// host/render.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -12,8 +13,12 @@ namespace gnomon {
 using Point = glm::dvec3;  // points, directions and colours alike
 using Point2 = glm::dvec2;
 
-[[nodiscard]] inline Point to_point(const float* v) { return {v[0], v[1], v[2]}; }
-[[nodiscard]] inline Point to_point(const Vec3& v) { return to_point(v.data()); }
+[[nodiscard]] inline Point to_point(const float* v) {
+  return {v[0], v[1], v[2]};
+}
+[[nodiscard]] inline Point to_point(const Vec3& v) {
+  return to_point(v.data());
+}
 [[nodiscard]] inline Vec3 to_vec3(const Point& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }

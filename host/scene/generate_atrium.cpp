@@ -9,10 +9,10 @@ namespace {
 
 AtriumMaterials add_materials(MeshSketch& sketch) {
   AtriumMaterials m{};
-  m.stone = sketch.material("stone", {0.72F, 0.64F, 0.52F}, 0.9F);
-  m.trim = sketch.material("trim", {0.80F, 0.75F, 0.66F}, 0.8F);
-  m.plaster = sketch.material("plaster", {0.76F, 0.66F, 0.53F});
-  m.tile_light = sketch.material("marble", {0.74F, 0.69F, 0.61F}, 0.35F);
+  m.stone = sketch.material("stone", {0.61F, 0.52F, 0.40F}, 0.9F);
+  m.trim = sketch.material("trim", {0.71F, 0.64F, 0.53F}, 0.8F);
+  m.plaster = sketch.material("plaster", {0.66F, 0.54F, 0.40F});
+  m.tile_light = sketch.material("marble", {0.66F, 0.59F, 0.50F}, 0.35F);
   m.tile_dark = sketch.material("terracotta", {0.42F, 0.22F, 0.15F}, 0.45F);
   m.grout = sketch.material("grout", {0.25F, 0.23F, 0.21F});
   m.wood = sketch.material("wood", {0.30F, 0.18F, 0.10F}, 0.8F);

@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "gnomon/base/error.h"
 #include "gnomon/scene/ray_set.h"

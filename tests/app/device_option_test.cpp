@@ -42,7 +42,8 @@ TEST_CASE("two devices of one platform are told apart") {
   two.environment["GNOMON_DEVICE"] = std::to_string(last);
   CHECK(json::parse(run({"info", "gen:random:100", "--json"}, two).out).at("device_index") == last);
   const auto address = devices.front().at("address").get<std::string>();
-  CHECK(json::parse(run({"info", "gen:random:100", "--device", address, "--json"}, two).out).at("device_index") == 0);
+  CHECK(json::parse(run({"info", "gen:random:100", "--device", address, "--json"}, two).out)
+            .at("device_index") == 0);
 }
 
 TEST_CASE("what does not fit exits 5 and names the buffer") {

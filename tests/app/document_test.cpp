@@ -25,26 +25,46 @@ json document_of(const std::vector<std::string>& arguments) {
   return json::parse(outcome.out);
 }
 
-const std::vector<const char*> kBuildKeys{
-    "/version", "/commit", "/command", "/device", "/driver", "/scene", "/scene_hash", "/triangles", "/dropped",
-    "/options/heuristic", "/options/bins", "/options/max_leaf", "/options/cost_traversal", "/options/cost_triangle",
-    "/options/invalid", "/options/work_group_size", "/build/total_ms", "/build/stages", "/tree/hash", "/tree/sah_cost",
-    "/tree/nodes", "/tree/leaves", "/tree/max_depth"};
+const std::vector<const char*> kBuildKeys{"/version",
+                                          "/commit",
+                                          "/command",
+                                          "/device",
+                                          "/driver",
+                                          "/scene",
+                                          "/scene_hash",
+                                          "/triangles",
+                                          "/dropped",
+                                          "/options/heuristic",
+                                          "/options/bins",
+                                          "/options/max_leaf",
+                                          "/options/cost_traversal",
+                                          "/options/cost_triangle",
+                                          "/options/invalid",
+                                          "/options/work_group_size",
+                                          "/build/total_ms",
+                                          "/build/stages",
+                                          "/tree/hash",
+                                          "/tree/sah_cost",
+                                          "/tree/nodes",
+                                          "/tree/leaves",
+                                          "/tree/max_depth"};
 
 }  // namespace
 
 TEST_CASE("devices, as a document") {
   const json document = document_of({"devices", "--json"});
-  require_keys(document, {"/version", "/commit", "/device", "/driver", "/devices/0/address", "/devices/0/max_allocation",
-                          "/devices/0/max_work_group", "/devices/0/local_memory", "/devices/0/unified_memory",
-                          "/devices/0/fp64", "/devices/0/int64_atomics"});
-  CHECK(document.at("devices").at(document.at("default_index").get<std::size_t>()).at("name") == document.at("device"));
+  require_keys(document, {"/version", "/commit", "/device", "/driver", "/devices/0/address",
+                          "/devices/0/max_allocation", "/devices/0/max_work_group", "/devices/0/local_memory",
+                          "/devices/0/unified_memory", "/devices/0/fp64", "/devices/0/int64_atomics"});
+  CHECK(document.at("devices").at(document.at("default_index").get<std::size_t>()).at("name") ==
+        document.at("device"));
 }
 
 TEST_CASE("info with a device says what a build needs") {
   const json document = document_of({"info", "gen:random:1k", "--json"});
-  require_keys(document, {"/device", "/driver", "/scene_hash", "/triangles", "/dropped", "/materials", "/cameras",
-                          "/lights/point", "/bounds/lo", "/build_memory/tree_bytes", "/build_memory/scratch_bytes"});
+  require_keys(document,
+               {"/device", "/driver", "/scene_hash", "/triangles", "/dropped", "/materials", "/cameras",
+                "/lights/point", "/bounds/lo", "/build_memory/tree_bytes", "/build_memory/scratch_bytes"});
   CHECK(document.at("build_memory").at("fits") == true);
 }
 
@@ -60,7 +80,8 @@ TEST_CASE("build, as a document") {
 }
 
 TEST_CASE("trace, as a document") {
-  const json document = document_of({"trace", "gen:cottage:8k", "--rays", "bounce", "--count", "5k", "--repeat", "3", "--json"});
+  const json document = document_of(
+      {"trace", "gen:cottage:8k", "--rays", "bounce", "--count", "5k", "--repeat", "3", "--json"});
   require_keys(document, kBuildKeys);
   require_keys(document, {"/rays", "/hits", "/invalid_rays", "/mrays_per_s/median", "/mrays_per_s/min",
                           "/mrays_per_s/max", "/mrays_per_s/n", "/clock", "/seconds", "/boxes_per_ray",
@@ -76,11 +97,11 @@ TEST_CASE("trace, as a document") {
 }
 
 TEST_CASE("the text of the same commands goes to stdout too, and --quiet leaves stderr empty") {
-  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-           {"devices", "--quiet"},
-           {"info", "gen:random:1k", "-q"},
-           {"build", "gen:cottage:8k", "-q"},
-           {"trace", "gen:cottage:8k", "--count", "2k", "--quiet"}}) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"devices", "--quiet"},
+                                             {"info", "gen:random:1k", "-q"},
+                                             {"build", "gen:cottage:8k", "-q"},
+                                             {"trace", "gen:cottage:8k", "--count", "2k", "--quiet"}}) {
     CAPTURE(arguments);
     const auto outcome = run(arguments);
     CHECK(outcome.status == 0);
@@ -93,7 +114,8 @@ TEST_CASE("the text of the same commands goes to stdout too, and --quiet leaves 
 TEST_CASE("a result that cannot be written is a failure") {
   program::Setup full;
   full.stdout_file = "/dev/full";
-  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{"devices"}, {"devices", "--json"}}) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"devices"}, {"devices", "--json"}}) {
     CAPTURE(arguments);
     const auto outcome = run(arguments, full);
     CHECK(outcome.status == 1);

@@ -21,7 +21,8 @@ struct Decoded {
   std::vector<unsigned char> bytes;
   [[nodiscard]] std::size_t colors() const {
     std::set<std::uint32_t> seen;
-    for (std::size_t i = 0; i + 2 < bytes.size(); i += 3) seen.insert(bytes[i] << 16U | bytes[i + 1] << 8U | bytes[i + 2]);
+    for (std::size_t i = 0; i + 2 < bytes.size(); i += 3)
+      seen.insert(bytes[i] << 16U | bytes[i + 1] << 8U | bytes[i + 2]);
     return seen.size();
   }
 };
@@ -41,8 +42,8 @@ Decoded decode(const std::string& file) {
 
 TEST_CASE("a picture and its heat map have the size asked for and something on them") {
   const Folder folder;
-  const auto outcome = run({"render", "gen:cottage:8k", "-o", folder.file("a.png"), "--heat-map", folder.file("heat.png"),
-                            "--width", "120", "--height", "70", "--json"});
+  const auto outcome = run({"render", "gen:cottage:8k", "-o", folder.file("a.png"), "--heat-map",
+                            folder.file("heat.png"), "--width", "120", "--height", "70", "--json"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.status == 0);
   for (const char* name : {"a.png", "heat.png"}) {
@@ -58,7 +59,8 @@ TEST_CASE("a picture and its heat map have the size asked for and something on t
   CHECK(document.at("rays").get<int>() > 4 * 120 * 70);
   CHECK(document.at("heat_map").at("scale_max").get<double>() > 1.0);
   CHECK(document.at("heat_map").at("max_boxes") >= document.at("heat_map").at("scale_max"));
-  for (const char* key : {"device", "driver", "commit", "scene_hash", "triangles", "dropped", "options", "build", "tree"}) {
+  for (const char* key :
+       {"device", "driver", "commit", "scene_hash", "triangles", "dropped", "options", "build", "tree"}) {
     CHECK(document.contains(key));
   }
   CHECK(folder.names().size() == 2);
@@ -67,8 +69,8 @@ TEST_CASE("a picture and its heat map have the size asked for and something on t
 TEST_CASE("the same seed gives the same picture, another seed another") {
   const Folder folder;
   const auto picture = [&](const std::string& name, const std::string& seed) {
-    REQUIRE(run({"render", "gen:random:1k", "-o", folder.file(name), "--width", "64", "--height", "48", "--seed", seed,
-                 "--quiet"})
+    REQUIRE(run({"render", "gen:random:1k", "-o", folder.file(name), "--width", "64", "--height", "48",
+                 "--seed", seed, "--quiet"})
                 .status == 0);
     return program::read_text(folder.file(name));
   };
@@ -80,8 +82,8 @@ TEST_CASE("the same seed gives the same picture, another seed another") {
 TEST_CASE("what a scene lacks is made up and said, unless --quiet") {
   const Folder folder;
   program::write_text(folder.file("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const std::vector<std::string> arguments{"render", folder.file("one.obj"), "-o", folder.file("one.png"),
-                                           "--width", "32", "--height", "32"};
+  const std::vector<std::string> arguments{
+      "render", folder.file("one.obj"), "-o", folder.file("one.png"), "--width", "32", "--height", "32"};
   const auto loud = run(arguments);
   CHECK(loud.status == 0);
   CHECK_THAT(loud.err, Contains("no lights") && Contains("no camera"));
@@ -107,8 +109,8 @@ TEST_CASE("Ctrl-C stops a long render, exits 130 and leaves no file") {
   program::Setup setup;
   setup.terminal = true;
   setup.interrupt_at = "render";
-  const auto outcome = run({"render", "gen:random:1k", "-o", folder.file("never.png"), "--samples", "4096", "--width",
-                            "1000", "--height", "1000"},
+  const auto outcome = run({"render", "gen:random:1k", "-o", folder.file("never.png"), "--samples", "4096",
+                            "--width", "1000", "--height", "1000"},
                            setup);
   CAPTURE(outcome.err);
   CHECK(outcome.status == 130);
@@ -119,15 +121,16 @@ TEST_CASE("Ctrl-C stops a long render, exits 130 and leaves no file") {
 
 TEST_CASE("progress is drawn on terminals only, and not when --quiet") {
   const Folder folder;
-  const std::vector<std::string> arguments{"render", "gen:random:1k", "-o", folder.file("a.png"), "--width", "16",
-                                           "--height", "16", "--quiet"};
+  const std::vector<std::string> arguments{
+      "render", "gen:random:1k", "-o", folder.file("a.png"), "--width", "16", "--height", "16", "--quiet"};
   program::Setup terminal;
   terminal.terminal = true;
   CHECK(run(arguments, terminal).err.empty());
 }
 
 TEST_CASE("a picture that cannot be written is a failure") {
-  const auto outcome = run({"render", "gen:random:100", "-o", "/nonexistent/a.png", "--width", "8", "--height", "8"});
+  const auto outcome =
+      run({"render", "gen:random:100", "-o", "/nonexistent/a.png", "--width", "8", "--height", "8"});
   CHECK(outcome.status == 1);
   CHECK_THAT(outcome.err, Contains("/nonexistent/a.png"));
 }

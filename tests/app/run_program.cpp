@@ -91,7 +91,8 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-pid_t start(const std::vector<std::string>& arguments, const Setup& setup, const Channel& out, const Channel& err) {
+pid_t start(const std::vector<std::string>& arguments, const Setup& setup, const Channel& out,
+            const Channel& err) {
   std::vector<std::string> words{GNOMON_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> entries = environment_of(setup);
@@ -157,7 +158,8 @@ Outcome run(const std::vector<std::string>& arguments, const Setup& setup) {
   int status = 0;
   waitpid(child, &status, 0);
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-  if (outcome.status == 1000 + SIGKILL) throw std::runtime_error("gnomon took too long; stderr: " + outcome.err);
+  if (outcome.status == 1000 + SIGKILL)
+    throw std::runtime_error("gnomon took too long; stderr: " + outcome.err);
   return outcome;
 }
 
@@ -174,7 +176,8 @@ Folder::~Folder() {
 
 std::vector<std::string> Folder::names() const {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(path_)) names.push_back(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(path_))
+    names.push_back(entry.path().filename().string());
   return names;
 }
 

@@ -46,7 +46,8 @@ std::vector<Record> records_of(const std::string& bytes) {
 }
 
 // Two triangles facing the z axis, at z = 0 and at z = -1.
-const char* const kTwoTriangles = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 -1\nv 4 0 -1\nv 0 4 -1\nf 1 2 3\nf 4 5 6\n";
+const char* const kTwoTriangles =
+    "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 -1\nv 4 0 -1\nv 0 4 -1\nf 1 2 3\nf 4 5 6\n";
 
 }  // namespace
 
@@ -92,19 +93,21 @@ TEST_CASE("rays written by one run are traced alike by another") {
                           folder.file("rays"), "--hits-out", folder.file("a"), "--repeat", "1", "--json"});
   REQUIRE(first.status == 0);
   CHECK(json::parse(first.out).at("options").at("query") == "closest");  // a file of hits needs those
-  const auto second = run({"trace", "gen:random:1k", "--rays-in", folder.file("rays"), "--hits-out", folder.file("b"),
-                           "--repeat", "1", "--json"});
+  const auto second = run({"trace", "gen:random:1k", "--rays-in", folder.file("rays"), "--hits-out",
+                           folder.file("b"), "--repeat", "1", "--json"});
   REQUIRE(second.status == 0);
   CHECK(json::parse(first.out).at("hits") == json::parse(second.out).at("hits"));
   CHECK(program::read_text(folder.file("a")) == program::read_text(folder.file("b")));
-  const auto any = run({"trace", "gen:random:1k", "--rays-in", folder.file("rays"), "--query", "any", "--repeat", "1", "--json"});
+  const auto any = run({"trace", "gen:random:1k", "--rays-in", folder.file("rays"), "--query", "any",
+                        "--repeat", "1", "--json"});
   CHECK(json::parse(any.out).at("hits") == json::parse(first.out).at("hits"));
 }
 
 TEST_CASE("every kind of rays can be made, by default for the query it is for") {
   for (const std::string kind : {"primary", "bounce", "shadow", "random", "parallel"}) {
     CAPTURE(kind);
-    const auto outcome = run({"trace", "gen:cottage:8k", "--rays", kind, "--count", "2k", "--repeat", "1", "--json"});
+    const auto outcome =
+        run({"trace", "gen:cottage:8k", "--rays", kind, "--count", "2k", "--repeat", "1", "--json"});
     REQUIRE(outcome.status == 0);
     const json document = json::parse(outcome.out);
     CHECK(document.at("rays").get<int>() > 0);

@@ -1,4 +1,5 @@
-// What the program says and how it exits where no device is needed: help, wrong usage, bad scenes, no device at all.
+// What the program says and how it exits where no device is needed: help, wrong usage, bad scenes, no device
+// at all.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -10,7 +11,8 @@ using program::run;
 
 namespace {
 
-const program::Setup kNoDevice{{{"OCL_ICD_VENDORS", "/nonexistent"}, {"GNOMON_DEVICE", std::nullopt}}, false, {}, {}};
+const program::Setup kNoDevice{
+    {{"OCL_ICD_VENDORS", "/nonexistent"}, {"GNOMON_DEVICE", std::nullopt}}, false, {}, {}};
 
 }  // namespace
 
@@ -95,15 +97,18 @@ TEST_CASE("a scene that cannot be used exits 4") {
   CHECK(dropped.status == 0);
   CHECK_THAT(dropped.err, Contains("dropped 1 triangles") && Contains("1 without area"));
   CHECK(run({"info", folder.file("flat.obj"), "--invalid", "reject"}, kNoDevice).status == 4);
-  const auto document = nlohmann::json::parse(run({"info", folder.file("flat.obj"), "--json", "-q"}, kNoDevice).out);
+  const auto document =
+      nlohmann::json::parse(run({"info", folder.file("flat.obj"), "--json", "-q"}, kNoDevice).out);
   CHECK(document.at("dropped") == 1);
   CHECK(document.at("triangles") == 1);
 }
 
 TEST_CASE("without any device those who need one exit 3 and name the remedy") {
-  const std::vector<std::vector<std::string>> needing{
-      {"devices"}, {"build", "gen:random"}, {"trace", "gen:random"}, {"validate", "gen:random"},
-      {"render", "gen:random", "-o", "never.png"}};
+  const std::vector<std::vector<std::string>> needing{{"devices"},
+                                                      {"build", "gen:random"},
+                                                      {"trace", "gen:random"},
+                                                      {"validate", "gen:random"},
+                                                      {"render", "gen:random", "-o", "never.png"}};
   for (const auto& arguments : needing) {
     CAPTURE(arguments);
     const auto outcome = run(arguments, kNoDevice);

@@ -15,8 +15,8 @@ struct Edit {
   std::string file, right, wrong;
 };
 
-// A copy of the kernels with some of their text replaced. Text that is no longer there fails the test: then the fault
-// has to be planted anew.
+// A copy of the kernels with some of their text replaced. Text that is no longer there fails the test: then
+// the fault has to be planted anew.
 class BrokenKernels {
  public:
   explicit BrokenKernels(const std::vector<Edit>& edits) {
@@ -29,14 +29,17 @@ class BrokenKernels {
       program::write_text(kernels_ / edit.file, text.replace(at, edit.right.size(), edit.wrong));
     }
   }
-  [[nodiscard]] program::Setup setup() const { return {{{"GNOMON_KERNELS", kernels_.string()}}, false, {}, {}}; }
+  [[nodiscard]] program::Setup setup() const {
+    return {{{"GNOMON_KERNELS", kernels_.string()}}, false, {}, {}};
+  }
 
  private:
   Folder folder_;
   std::filesystem::path kernels_ = folder_.path() / "kernels";
 };
 
-const std::vector<std::string> kValidate{"validate", "gen:cottage:8k", "--count", "3k", "--max-rays", "300", "--json"};
+const std::vector<std::string> kValidate{"validate", "gen:cottage:8k", "--count", "3k", "--max-rays",
+                                         "300",      "--json"};
 
 std::uint64_t sum_of(const json& document, const char* key) {
   std::uint64_t sum = 0;
@@ -71,7 +74,8 @@ TEST_CASE("a right tree and right hits are found right") {
 }
 
 TEST_CASE("the reference builder is asked on large scenes only on demand") {
-  const std::vector<std::string> large{"validate", "gen:random:201k", "--count", "50", "--max-rays", "5", "--json"};
+  const std::vector<std::string> large{"validate", "gen:random:201k", "--count", "50", "--max-rays",
+                                       "5",        "--json"};
   const json quick = json::parse(run(large).out);
   CHECK(quick.at("reference_hash").is_null());
   auto thorough = large;
@@ -82,8 +86,9 @@ TEST_CASE("the reference builder is asked on large scenes only on demand") {
 
 TEST_CASE("kernels that lose hits near the edges of triangles are caught") {
   // What the float filter leaves undecided is taken for a miss, and it leaves more undecided.
-  const BrokenKernels broken({{"shared/hit_math.h", "  return -1;", "  return 0;"},
-                              {"shared/hit_math.h", "const gn_f32 bound = ", "const gn_f32 bound = 4096.0f * "}});
+  const BrokenKernels broken(
+      {{"shared/hit_math.h", "  return -1;", "  return 0;"},
+       {"shared/hit_math.h", "const gn_f32 bound = ", "const gn_f32 bound = 4096.0f * "}});
   const auto outcome = run(kValidate, broken.setup());
   CAPTURE(outcome.out, outcome.err);
   REQUIRE(outcome.status == 6);
@@ -92,7 +97,8 @@ TEST_CASE("kernels that lose hits near the edges of triangles are caught") {
   CHECK(document.at("tree_fault").is_null());
   CHECK(sum_of(document, "lost") > 0);
   CHECK(document.at("mismatches") == sum_of(document, "lost") + sum_of(document, "false_hits") +
-                                         sum_of(document, "wrong_primitive") + sum_of(document, "any_closest_disagree"));
+                                         sum_of(document, "wrong_primitive") +
+                                         sum_of(document, "any_closest_disagree"));
 }
 
 TEST_CASE("kernels that build boxes too small are caught by the tree alone") {
@@ -110,7 +116,8 @@ TEST_CASE("kernels that build boxes too small are caught by the tree alone") {
 }
 
 TEST_CASE("kernels that do not compile, or are not there, are failures that say so") {
-  const BrokenKernels broken({{"trace.cl", "__kernel void trace_closest(", "__kernel void trace_closest(what "}});
+  const BrokenKernels broken(
+      {{"trace.cl", "__kernel void trace_closest(", "__kernel void trace_closest(what "}});
   const auto outcome = run(kValidate, broken.setup());
   CHECK(outcome.status == 1);
   CHECK_THAT(outcome.err, Contains("build log") && Contains("trace.cl"));

@@ -1,4 +1,5 @@
-// How samples become a picture: soft light is shared with neighbours on the same surface, and with nobody else.
+// How samples become a picture: soft light is shared with neighbours on the same surface, and with nobody
+// else.
 #include "gnomon/render/film.h"
 
 #include <catch2/catch.hpp>

@@ -15,12 +15,16 @@ using namespace gnomon;
 
 namespace {
 
-Picture grey(std::uint32_t width, float value) { return {width, 1, std::vector<Vec3>(width, {value, value, value})}; }
+Picture grey(std::uint32_t width, float value) {
+  return {width, 1, std::vector<Vec3>(width, {value, value, value})};
+}
 
 }  // namespace
 
 TEST_CASE("exposure makes a grey picture look the same however bright it is") {
-  const auto shown = [](float value) { return tone_map(grey(9, value), auto_exposure(grey(9, value))).bytes[0]; };
+  const auto shown = [](float value) {
+    return tone_map(grey(9, value), auto_exposure(grey(9, value))).bytes[0];
+  };
   CHECK(shown(1e-4F) == shown(1.0F));
   CHECK(shown(1e4F) == shown(1.0F));
   CHECK(shown(1.0F) > 100);
@@ -58,8 +62,8 @@ TEST_CASE("sRGB bytes are those of the standard, and stay in range") {
   const auto byte = [](double linear) { return static_cast<int>(to_srgb_byte(linear)); };
   CHECK(byte(-1.0) == 0);
   CHECK(byte(0.0) == 0);
-  CHECK(byte(0.002) == 7);         // the straight part: 12.92 * 0.002 * 255
-  CHECK(byte(0.2158605) == 128);   // ((128 / 255 + 0.055) / 1.055) ^ 2.4
+  CHECK(byte(0.002) == 7);        // the straight part: 12.92 * 0.002 * 255
+  CHECK(byte(0.2158605) == 128);  // ((128 / 255 + 0.055) / 1.055) ^ 2.4
   CHECK(byte(1.0) == 255);
   CHECK(byte(7.0) == 255);
 }
@@ -98,8 +102,9 @@ TEST_CASE("a PNG decodes to the bytes it was made of") {
   for (unsigned i = 0; i < 45; ++i) image.bytes.push_back(static_cast<std::uint8_t>(37 * i));
   const std::vector<std::byte> file = encode_png(image);
   int width = 0, height = 0, channels = 0;
-  unsigned char* const decoded = stbi_load_from_memory(reinterpret_cast<const unsigned char*>(file.data()),
-                                                       static_cast<int>(file.size()), &width, &height, &channels, 0);
+  unsigned char* const decoded =
+      stbi_load_from_memory(reinterpret_cast<const unsigned char*>(file.data()),
+                            static_cast<int>(file.size()), &width, &height, &channels, 0);
   REQUIRE(decoded != nullptr);
   CHECK(width == 5);
   CHECK(height == 3);

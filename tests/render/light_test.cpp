@@ -97,7 +97,8 @@ TEST_CASE("an area light's samples have the mean that its solid angle says") {
     CHECK(there.y == Approx(4.0));
     sum += lit->irradiance.x;
   }
-  // Form factor of a square above its centre: 4 times the corner's 2 / pi * a / s * atan(a / s), a = 1, s = sqrt(17).
+  // Form factor of a square above its centre: 4 times the corner's 2 / pi * a / s * atan(a / s), a = 1, s =
+  // sqrt(17).
   const double s = std::sqrt(17.0);
   CHECK(sum / kCount == Approx(8.0 * 4.0 / s * std::atan(1.0 / s)).epsilon(5e-3));
 }
@@ -120,7 +121,8 @@ TEST_CASE("many lights drawn at random add up to all of them") {
   }
   const LightSet lights(scene, kBounds);
   double expected = 0.0;
-  for (std::size_t i = 0; i < lights.size(); ++i) expected += lights.sample(i, Point{0.0}, kUp, Point2{0.0})->irradiance.x;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    expected += lights.sample(i, Point{0.0}, kUp, Point2{0.0})->irradiance.x;
   std::vector<Place> places;
   for (std::uint32_t i = 0; i < 20'000; ++i) places.push_back({Point{0.0}, kUp, Point{M_PI}, 0, i});
   const LightRays rays(lights, 7);
@@ -131,7 +133,8 @@ TEST_CASE("many lights drawn at random add up to all of them") {
     return sum / static_cast<double>(places.size());
   };
   double in_rounds = 0.0;
-  for (std::uint32_t round = 0; round < rays.rounds(); ++round) in_rounds += mean_of(rays.aim_round(places, round));
+  for (std::uint32_t round = 0; round < rays.rounds(); ++round)
+    in_rounds += mean_of(rays.aim_round(places, round));
   CHECK(in_rounds == Approx(expected).epsilon(0.02));
   const ShadowBatch once = rays.aim_once(places);
   CHECK(once.rays.size() == places.size());

@@ -9,4 +9,4 @@ if output=$("$1" "[portable]" -w NoTests 2>&1); then
   echo "$output"
   exit 1
 fi
-grep -q "pocl-opencl-icd" <<<"$output" || { echo "no word of what to install:"; echo "$output"; exit 1; }
+grep -q "no OpenCL device found. Install" <<<"$output" || { echo "no word of what to install:"; echo "$output"; exit 1; }

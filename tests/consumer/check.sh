@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# Installs a build to a folder of its own and uses it as a stranger would: through CMake, through pkg-config, and each
+# header alone. The README shows the same program.
+#   check.sh BUILD_FOLDER CXX_COMPILER
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+build=$1
+compiler=$2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+cmake --install "$build" --prefix "$scratch/installed" >"$scratch/log"
+# Moved afterwards: nothing in it may depend on where it was installed.
+mv "$scratch/installed" "$scratch/moved"
+prefix=$scratch/moved
+"$prefix/bin/gnomon" --version
+
+echo "== through CMake"
+cmake -S "$here" -B "$scratch/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$compiler" \
+  -DCMAKE_PREFIX_PATH="$prefix" >"$scratch/log" || { cat "$scratch/log"; exit 1; }
+cmake --build "$scratch/build" >"$scratch/log" || { cat "$scratch/log"; exit 1; }
+"$scratch/build/consumer"
+
+echo "== through pkg-config"
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name gnomon.pc)")
+export PKG_CONFIG_PATH
+read -ra compile_flags <<<"$(pkg-config --cflags gnomon)"
+read -ra link_flags <<<"$(pkg-config --libs gnomon)"
+"$compiler" -std=c++20 "${compile_flags[@]}" "$here/main.cpp" "${link_flags[@]}" -o "$scratch/consumer"
+"$scratch/consumer"
+
+echo "== every header alone, with a user's strict warnings"
+cd "$prefix/include"
+find gnomon -name '*.h' | sort | while read -r header; do
+  "$compiler" -std=c++20 -fsyntax-only -Wall -Wextra -Werror "${compile_flags[@]}" -x c++ - <<<"#include \"$header\""
+done
+find gnomon -name '*.h' | wc -l
+
+echo "== the README shows this program"
+sed -n '/<!-- example begin -->/,/<!-- example end -->/p' "$here/../../README.md" | sed '/^<!--/d; /^```/d; /^$/d' >"$scratch/shown"
+sed '/^$/d' "$here/main.cpp" | diff - "$scratch/shown"

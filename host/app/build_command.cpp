@@ -46,7 +46,7 @@ int run(const Options& options, Console& console) {
   options.build.check();
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const TimedBuild build = build_timed(context, scene, options.build, options.runs, console.progress());
+  const TimedBuild build = build_for_use(context, scene, options.build, options.runs, console.progress());
   stop_if_interrupted();
   Json document = start_document("build");
   add_device(document, &context.device());

@@ -61,14 +61,16 @@ void add_build(Json& document, const TimedBuild& build) {
                        {"warm_up", build.runs.warm_up},
                        {"stages", stages},
                        {"scratch_bytes", build.median.scratch_bytes}};
-  document["tree"] = {{"hash", build.hash},
-                      {"sah_cost", build.stats.sah_cost},
-                      {"nodes", build.stats.nodes},
-                      {"leaves", build.stats.leaves},
-                      {"max_depth", build.stats.max_depth},
-                      {"largest_leaf", build.stats.largest_leaf},
-                      {"mean_leaf", build.stats.mean_leaf},
-                      {"bytes", build.tree.bytes()}};
+  Json& tree = document["tree"];
+  tree = {{"hash", build.hash},   {"sah_cost", nullptr},        {"nodes", build.host.nodes.size()},
+          {"leaves", nullptr},    {"max_depth", nullptr},       {"largest_leaf", nullptr},
+          {"mean_leaf", nullptr}, {"bytes", build.tree.bytes()}};
+  if (build.fault) return;  // such a tree has no measures
+  tree["sah_cost"] = build.stats.sah_cost;
+  tree["leaves"] = build.stats.leaves;
+  tree["max_depth"] = build.stats.max_depth;
+  tree["largest_leaf"] = build.stats.largest_leaf;
+  tree["mean_leaf"] = build.stats.mean_leaf;
 }
 
 Json to_json(const Spread& spread) {
@@ -86,6 +88,7 @@ std::string describe(const Scene& scene) {
 }
 
 std::string describe(const TimedBuild& build) {
+  if (build.fault) return "hash " + build.hash + ", " + std::to_string(build.host.nodes.size()) + " nodes";
   return "hash " + build.hash + ", SAH cost " + fixed(build.stats.sah_cost, 2) + ", " +
          std::to_string(build.stats.nodes) + " nodes, " + std::to_string(build.stats.leaves) +
          " leaves, depth " + std::to_string(build.stats.max_depth);

@@ -102,7 +102,7 @@ int run(Options options, Console& console) {
   options.render.check();
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const TimedBuild build = build_timed(context, scene, options.build, {1, false}, console.progress());
+  const TimedBuild build = build_for_use(context, scene, options.build, {1, false}, console.progress());
   const Outcome outcome = render_timed(options, context, build, scene, console.progress());
   write_pictures(options, outcome);
   for (const std::string& note : outcome.result.notes) console.note(note);

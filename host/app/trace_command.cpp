@@ -98,7 +98,7 @@ int run(const Options& options, Console& console) {
   const bool any_hit = wants_any_hit(options);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const TimedBuild build = build_timed(context, scene, options.build, {1, true}, console.progress());
+  const TimedBuild build = build_for_use(context, scene, options.build, {1, true}, console.progress());
   const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
   stop_if_interrupted();
   const TimedTrace trace =

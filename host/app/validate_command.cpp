@@ -11,7 +11,6 @@
 #include "document.h"
 #include "exit_status.h"
 #include "gnomon/tree/build_reference.h"
-#include "gnomon/tree/bvh_check.h"
 #include "gnomon/tree/oracle.h"
 #include "interrupt.h"
 #include "numbers.h"
@@ -61,7 +60,7 @@ struct Findings {
 };
 
 void check_tree(Findings& findings, const Options& options, const Scene& scene, const TimedBuild& build) {
-  findings.fault = check_bvh(build.host, scene.triangles, options.build);
+  findings.fault = build.fault;
   if (!options.reference && scene.triangles.size() > kReferenceLimit) return;
   findings.reference_hash = tree_hash(build_reference(scene.triangles, options.build));
   findings.tree_differs = *findings.reference_hash != build.hash;
@@ -122,6 +121,7 @@ void add_findings(Json& document, const Options& options, const Findings& findin
 }
 
 std::string kind_table(const Findings& findings) {
+  if (findings.kinds.empty()) return {};
   Table table(
       {"kind", "rays", "judged", "lost", "false", "wrong", "any/closest", "ties", "max t error (ulp)"});
   for (const KindReport& kind : findings.kinds) {
@@ -130,7 +130,7 @@ std::string kind_table(const Findings& findings) {
                std::to_string(o.false_hits), std::to_string(o.wrong_primitive),
                std::to_string(o.any_closest_disagree), std::to_string(o.ties), fixed(o.max_t_error_ulp, 2)});
   }
-  return table.text();
+  return table.text() + "\n";
 }
 
 std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const TimedBuild& build,
@@ -162,9 +162,13 @@ int run(const Options& options, Console& console) {
   const TimedBuild build = build_timed(context, scene, options.build, {1, false}, console.progress());
   Findings findings;
   check_tree(findings, options, scene, build);
-  check_rays(findings, options, scene, Tracer(context, build.tree), console.progress());
+  if (findings.fault) {
+    console.note("no rays are sent through a broken tree: they might never come back");
+  } else {
+    check_rays(findings, options, scene, Tracer(context, build.tree), console.progress());
+  }
   stop_if_interrupted();
-  if (findings.judged() == 0) {
+  if (findings.good() && findings.judged() == 0) {
     throw Error(ErrorCode::kDevice,
                 "no ray was judged, so nothing is known; give more --count, --max-rays or --budget");
   }
@@ -180,7 +184,7 @@ int run(const Options& options, Console& console) {
   add_build(document, build);
   add_findings(document, options, findings);
   console.print(document);
-  console.print(facts_of(context.device(), scene, build, findings) + "\n" + kind_table(findings) + "\n" +
+  console.print(facts_of(context.device(), scene, build, findings) + "\n" + kind_table(findings) +
                 verdict(findings, console));
   return findings.good() ? kOk : kMismatch;
 }

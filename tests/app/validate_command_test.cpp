@@ -109,10 +109,22 @@ TEST_CASE("kernels that build boxes too small are caught by the tree alone") {
   const json document = json::parse(outcome.out);
   CHECK(document.at("ok") == false);
   CHECK(document.at("tree_fault").is_string());
+  CHECK(document.at("tree").at("sah_cost").is_null());
+  CHECK(document.at("kinds").empty());
   CHECK(document.at("reference_hash") != document.at("tree").at("hash"));
   const auto text = run({"validate", "gen:cottage:8k", "--count", "50", "-q"}, broken.setup());
   CHECK(text.status == 6);
   CHECK_THAT(text.out, Contains("MISMATCH") && Contains("BROKEN") && Contains("DIFFERS"));
+  // The others do not use such a tree.
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"build", "gen:cottage:8k"},
+                                             {"trace", "gen:cottage:8k"},
+                                             {"render", "gen:cottage:8k", "-o", "never.png"}}) {
+    CAPTURE(arguments);
+    const auto refused = run(arguments, broken.setup());
+    CHECK(refused.status == 1);
+    CHECK_THAT(refused.err, Contains("broken tree"));
+  }
 }
 
 TEST_CASE("kernels that do not compile, or are not there, are failures that say so") {

@@ -3,7 +3,9 @@
 #include "shared/hit_math.h"
 #include "shared/cost_math.h"
 
-#define GN_OFFSET(type, member) ((uint)(size_t)(&((type*)0)->member))
+// From a real address: a null pointer need not have the bits of zero.
+#define GN_OFFSET(type, member) \
+  ((uint)((__global char*)&((__global type*)out)->member - (__global char*)out))
 
 __kernel void probe_layout(__global uint* out) {
   out[0] = sizeof(GnTriangle);
@@ -23,6 +25,7 @@ __kernel void probe_layout(__global uint* out) {
   out[14] = GN_OFFSET(GnRay, direction);
   out[15] = GN_OFFSET(GnTask, buffer);
   out[16] = GN_HAS_FP64;
+  out[17] = sizeof(GnWalk);
 }
 
 // x[i] y[i] z[i] -> products and sums that would differ were they fused, the division-free reciprocal, and bins.

@@ -44,10 +44,11 @@ static inline void decide(GnTask* task, GnSplit split, uint max_leaf_size, float
 }
 
 // One work-group per task of roots. Writes nodes into the sparse array, marks split positions in inner_rank with 1
-// and leaf order into order; raises max_depth to the deepest leaf.
+// and leaf order into order; raises outcome[0] to the deepest leaf's depth. outcome[1] counts subtrees that were left
+// unfinished, which only a device that ends loops by itself does.
 __kernel void build_subtrees(__global float8* primitives0, __global float8* primitives1,
                              __global const GnTask* roots, __global GnNode* nodes, __global uint* inner_rank,
-                             __global uint* order, volatile __global uint* max_depth, uint max_leaf_size,
+                             __global uint* order, volatile __global uint* outcome, uint max_leaf_size,
                              uint median_depth, float cost_traversal, float cost_triangle) {
   __local GnBin bins[3 * GN_BINS];
   __local uint counts[3 * GN_BINS];
@@ -133,5 +134,8 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
     }
     GN_GROUP_BARRIER();
   }
-  if (GN_LOCAL_ID == 0u) atomic_max(max_depth, deepest);
+  if (GN_LOCAL_ID == 0u) {
+    atomic_max(outcome, deepest);
+    if (top != 0u) atomic_inc(outcome + 1);
+  }
 }

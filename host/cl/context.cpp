@@ -5,6 +5,7 @@
 
 #include "gnomon/base/error.h"
 #include "gnomon/cl/check.h"
+#include "gnomon/cl/loop_limit.h"
 #include "gnomon/cl/program.h"
 
 namespace gnomon::cl {
@@ -14,7 +15,8 @@ namespace {
 // A mapping of part of a buffer, undone when it goes.
 class Mapping {
  public:
-  Mapping(cl_command_queue queue, const Buffer& buffer, cl_map_flags flags, std::size_t offset, std::size_t bytes)
+  Mapping(cl_command_queue queue, const Buffer& buffer, cl_map_flags flags, std::size_t offset,
+          std::size_t bytes)
       : queue_(queue), mem_(buffer.mem.get()) {
     cl_int status = CL_SUCCESS;
     pointer_ = clEnqueueMapBuffer(queue, mem_, CL_TRUE, flags, offset, bytes, 0, nullptr, nullptr, &status);
@@ -39,11 +41,12 @@ void require_range(const Buffer& buffer, std::size_t offset, std::size_t bytes) 
 
 }  // namespace
 
-std::optional<std::string> why_not_fit(const DeviceInfo& device, const std::string& name, std::uint64_t bytes) {
+std::optional<std::string> why_not_fit(const DeviceInfo& device, const std::string& name,
+                                       std::uint64_t bytes) {
   const std::uint64_t limit = std::min(device.max_allocation, device.global_memory);
   if (bytes <= limit) return std::nullopt;
-  return "buffer " + name + " needs " + std::to_string(bytes) + " bytes, but " + device.name + " allows at most " +
-         std::to_string(limit) + " in one buffer; use a smaller scene or another device";
+  return "buffer " + name + " needs " + std::to_string(bytes) + " bytes, but " + device.name +
+         " allows at most " + std::to_string(limit) + " in one buffer; use a smaller scene or another device";
 }
 
 Context::Context(const DeviceInfo& device, const ContextOptions& options) : device_(device) {
@@ -58,7 +61,8 @@ Context::Context(const DeviceInfo& device, const ContextOptions& options) : devi
   finish_setup(options);
 }
 
-Context::Context(cl_context context, cl_device_id device, cl_command_queue queue, const ContextOptions& options)
+Context::Context(cl_context context, cl_device_id device, cl_command_queue queue,
+                 const ContextOptions& options)
     : device_(describe_device(device)),
       context_(Handle<cl_context>::share(context)),
       queue_(Handle<cl_command_queue>::share(queue)) {
@@ -74,13 +78,15 @@ void Context::finish_setup(const ContextOptions& options) {
   check(clGetCommandQueueInfo(queue_.get(), CL_QUEUE_PROPERTIES, sizeof flags, &flags, nullptr),
         "clGetCommandQueueInfo");
   if ((flags & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0) {
-    throw Error(ErrorCode::kInvalidArgument, "the command queue is out-of-order; gnomon needs an in-order queue");
+    throw Error(ErrorCode::kInvalidArgument,
+                "the command queue is out-of-order; gnomon needs an in-order queue");
   }
   if (!device_.little_endian) {
     throw Error(ErrorCode::kDevice, device_.name + " is big-endian, which gnomon does not support");
   }
   profiles_ = (flags & CL_QUEUE_PROFILING_ENABLE) != 0;
   programs_ = std::make_unique<ProgramStore>(context_.get(), device_, options);
+  device_.loop_limit = measure_loop_limit(*this);
 }
 
 Buffer Context::create_buffer(const std::string& name, std::size_t bytes) const {
@@ -111,8 +117,9 @@ void Context::download(const Buffer& buffer, std::span<std::byte> bytes, std::si
 void Context::fill(const Buffer& buffer, std::uint32_t word) const {
   const std::size_t bytes = buffer.bytes / sizeof word * sizeof word;
   if (bytes == 0) return;
-  check(clEnqueueFillBuffer(queue_.get(), buffer.mem.get(), &word, sizeof word, 0, bytes, 0, nullptr, nullptr),
-        "clEnqueueFillBuffer", buffer.name);
+  check(
+      clEnqueueFillBuffer(queue_.get(), buffer.mem.get(), &word, sizeof word, 0, bytes, 0, nullptr, nullptr),
+      "clEnqueueFillBuffer", buffer.name);
 }
 
 }  // namespace gnomon::cl

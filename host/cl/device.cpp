@@ -20,10 +20,12 @@ T number(cl_device_id device, cl_device_info what) {
 }
 
 std::string trimmed(std::string text) {
-  while (!text.empty() && (text.back() == '\0' || std::isspace(static_cast<unsigned char>(text.back())) != 0)) {
+  while (!text.empty() &&
+         (text.back() == '\0' || std::isspace(static_cast<unsigned char>(text.back())) != 0)) {
     text.pop_back();
   }
-  const auto start = std::find_if(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) == 0; });
+  const auto start =
+      std::find_if(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) == 0; });
   return {start, text.end()};
 }
 
@@ -80,12 +82,14 @@ Devices::const_iterator find_choice(const Devices& devices, std::string_view cho
   }
   if (wanted == "gpu") return find(is_gpu);
   if (wanted == "cpu") return find(is_cpu);
-  if (const auto index = as_number(wanted)) return find([&](const DeviceInfo& d) { return d.index == *index; });
+  if (const auto index = as_number(wanted))
+    return find([&](const DeviceInfo& d) { return d.index == *index; });
   if (const auto colon = wanted.find(':'); colon != std::string::npos) {
     const auto platform = as_number(std::string_view(wanted).substr(0, colon));
     const auto device = as_number(std::string_view(wanted).substr(colon + 1));
     if (platform && device) {
-      return find([&](const DeviceInfo& d) { return d.platform_index == *platform && d.device_index == *device; });
+      return find(
+          [&](const DeviceInfo& d) { return d.platform_index == *platform && d.device_index == *device; });
     }
   }
   return find([&](const DeviceInfo& d) {
@@ -157,15 +161,17 @@ std::string format_devices(const std::vector<DeviceInfo>& devices) {
 
 const DeviceInfo& choose_device(const std::vector<DeviceInfo>& devices, std::string_view choice) {
   if (devices.empty()) {
-    throw Error(ErrorCode::kNoDevice,
-                "no OpenCL device found. Install a driver (on Debian: apt install pocl-opencl-icd runs everything on "
-                "the CPU) and check with: clinfo -l");
+    throw Error(
+        ErrorCode::kNoDevice,
+        "no OpenCL device found. Install a driver (on Debian: apt install pocl-opencl-icd runs everything on "
+        "the CPU) and check with: clinfo -l");
   }
   const auto found = find_choice(devices, choice);
   if (found == devices.end()) {
-    throw Error(ErrorCode::kNoDevice, "no OpenCL device matches \"" + std::string(choice) +
-                                          "\". Choose an index, platform:device, cpu, gpu or a part of the name:\n" +
-                                          format_devices(devices));
+    throw Error(ErrorCode::kNoDevice,
+                "no OpenCL device matches \"" + std::string(choice) +
+                    "\". Choose an index, platform:device, cpu, gpu or a part of the name:\n" +
+                    format_devices(devices));
   }
   return *found;
 }

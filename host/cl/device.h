@@ -35,6 +35,9 @@ struct DeviceInfo {
   bool fp64 = false;            // double precision: hit decisions are exact
   bool int64_atomics = false;
   bool little_endian = true;
+  // Turns all loops of one work-item may make together before the device ends them without a word (65535 on Mesa's
+  // llvmpipe); 0: as many as they like. Measured when a Context is made, 0 before.
+  std::uint32_t loop_limit = 0;
 };
 
 // Every device of every platform, in platform order. Platforms without devices are left out. Empty when there is none.

@@ -10,8 +10,10 @@ std::vector<std::pair<std::string, double>> StageTimes::milliseconds() const {
     wait(event);
     cl_ulong start = 0;
     cl_ulong end = 0;
-    if (clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) != CL_SUCCESS ||
-        clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) != CL_SUCCESS) {
+    if (clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) !=
+            CL_SUCCESS ||
+        clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) !=
+            CL_SUCCESS) {
       continue;
     }
     const std::string name = stage;
@@ -26,8 +28,8 @@ Handle<cl_event> enqueue(cl_command_queue queue, cl_kernel kernel, std::size_t g
                          std::span<const cl_event> wait_for) {
   cl_event event = nullptr;
   check(clEnqueueNDRangeKernel(queue, kernel, 1, nullptr, &global, local == 0 ? nullptr : &local,
-                               static_cast<cl_uint>(wait_for.size()), wait_for.empty() ? nullptr : wait_for.data(),
-                               &event),
+                               static_cast<cl_uint>(wait_for.size()),
+                               wait_for.empty() ? nullptr : wait_for.data(), &event),
         "clEnqueueNDRangeKernel");
   return Handle<cl_event>(event);
 }

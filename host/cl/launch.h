@@ -39,11 +39,16 @@ inline void set_argument(cl_kernel kernel, cl_uint index, float value) {
 }
 }  // namespace detail
 
-// Sets all arguments, in order: buffers, cl_mem, 32-bit numbers.
+// Sets arguments from place `index` on, in order: buffers, cl_mem, 32-bit numbers.
+template <typename... Arguments>
+void set_arguments_from(cl_kernel kernel, cl_uint index, const Arguments&... arguments) {
+  (detail::set_argument(kernel, index++, arguments), ...);
+}
+
+// Sets all arguments.
 template <typename... Arguments>
 void set_arguments(cl_kernel kernel, const Arguments&... arguments) {
-  cl_uint index = 0;
-  (detail::set_argument(kernel, index++, arguments), ...);
+  set_arguments_from(kernel, 0, arguments...);
 }
 
 // Enqueues a one-dimensional launch; local 0 lets the driver choose. Never blocks.

@@ -27,13 +27,16 @@ std::string hex(std::uint64_t value) {
   return text;
 }
 
-std::uint64_t hash_of(std::string_view text) { return XXH3_64bits(text.data(), text.size()); }
+std::uint64_t hash_of(std::string_view text) {
+  return XXH3_64bits(text.data(), text.size());
+}
 
 std::string read_kernel(std::string_view path) {
   if (const char* folder = std::getenv("GNOMON_KERNELS"); folder != nullptr && *folder != '\0') {
     const auto file = std::filesystem::path(folder) / path;
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw Error(ErrorCode::kIo, "cannot read kernel source " + file.string() + " (GNOMON_KERNELS is set)");
+    if (!in)
+      throw Error(ErrorCode::kIo, "cannot read kernel source " + file.string() + " (GNOMON_KERNELS is set)");
     return {std::istreambuf_iterator<char>(in), {}};
   }
   for (const EmbeddedFile& file : embedded_kernels()) {
@@ -89,7 +92,9 @@ std::optional<std::string> read_entry(const std::filesystem::path& entry) {
 
 }  // namespace
 
-std::string flatten_kernel(std::string_view path) { return flatten_all({std::string(path)}); }
+std::string flatten_kernel(std::string_view path) {
+  return flatten_all({std::string(path)});
+}
 
 std::filesystem::path default_cache_folder() {
   if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg == '/') {
@@ -110,7 +115,8 @@ cl_program ProgramStore::get(const std::vector<std::string>& files, const std::s
   const std::string all_options = "-cl-std=CL1.2 " + options;
   const std::string source = flatten_all(files);
   std::string key(kCacheFormat);
-  for (const std::string& part : {source, all_options, device_.name, device_.platform_name, device_.version, device_.driver}) {
+  for (const std::string& part :
+       {source, all_options, device_.name, device_.platform_name, device_.version, device_.driver}) {
     key += '\n' + hex(hash_of(part));
   }
   const std::string name = hex(hash_of(key));
@@ -161,7 +167,8 @@ Handle<cl_program> ProgramStore::compile(const std::string& source, const std::s
   check(status, "clCreateProgramWithSource");
   status = clBuildProgram(program.get(), 1, &device_.device, options.c_str(), nullptr, nullptr);
   if (status != CL_SUCCESS) {
-    check(status, "clBuildProgram", device_.name + ", options " + options + "; build log:\n" + build_log(program.get()));
+    check(status, "clBuildProgram",
+          device_.name + ", options " + options + "; build log:\n" + build_log(program.get()));
   }
   stats_.compiled += 1;
   return program;
@@ -170,14 +177,17 @@ Handle<cl_program> ProgramStore::compile(const std::string& source, const std::s
 void ProgramStore::save_binary(const std::filesystem::path& entry, cl_program program) const {
   if (entry.empty()) return;
   std::size_t size = 0;
-  if (clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, nullptr) != CL_SUCCESS || size == 0) return;
+  if (clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, nullptr) != CL_SUCCESS ||
+      size == 0)
+    return;
   std::string payload(size, '\0');
   auto* bytes = reinterpret_cast<unsigned char*>(payload.data());
   if (clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof bytes, &bytes, nullptr) != CL_SUCCESS) return;
   // A cache that cannot be written is no error; a half-written entry must never appear under its name.
   std::error_code failed;
   std::filesystem::create_directories(entry.parent_path(), failed);
-  const auto temporary = entry.parent_path() / (entry.stem().string() + "." + std::to_string(getpid()) + ".tmp");
+  const auto temporary =
+      entry.parent_path() / (entry.stem().string() + "." + std::to_string(getpid()) + ".tmp");
   std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
   out << kCacheFormat << '\n' << hex(hash_of(payload)) << '\n' << payload;
   out.close();
@@ -187,7 +197,8 @@ void ProgramStore::save_binary(const std::filesystem::path& entry, cl_program pr
 
 std::string ProgramStore::build_log(cl_program program) const {
   std::size_t size = 0;
-  if (clGetProgramBuildInfo(program, device_.device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size) != CL_SUCCESS) return {};
+  if (clGetProgramBuildInfo(program, device_.device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size) != CL_SUCCESS)
+    return {};
   std::string log(size, '\0');
   clGetProgramBuildInfo(program, device_.device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
   while (!log.empty() && log.back() == '\0') log.pop_back();

@@ -19,11 +19,12 @@ const std::vector<std::string> kSources = {"prepare.cl", "large.cl", "subtree.cl
 // One build in progress: buffers, kernels, and the passes in order.
 class DeviceBuilder {
  public:
-  DeviceBuilder(const cl::Context& context, const BuildOptions& options, const BuildPlan& plan, cl_mem triangles)
+  DeviceBuilder(const cl::Context& context, const BuildOptions& options, const BuildPlan& plan,
+                cl_mem triangles)
       : context_(context), options_(options), plan_(plan), triangles_(triangles) {
-    for (cl::Buffer* buffer : {&primitives_a_, &primitives_b_, &sparse_nodes_, &inner_rank_, &rank_sums_, &status_,
-                               &chunk_bounds_, &chunk_bins_, &chunk_counts_, &chunks_, &tasks_, &first_chunk_,
-                               &children_, &order_}) {
+    for (cl::Buffer* buffer :
+         {&primitives_a_, &primitives_b_, &sparse_nodes_, &inner_rank_, &rank_sums_, &status_, &chunk_bounds_,
+          &chunk_bins_, &chunk_counts_, &chunks_, &tasks_, &first_chunk_, &children_, &order_}) {
       *buffer = allocate(buffer->name);
     }
   }
@@ -55,20 +56,23 @@ class DeviceBuilder {
   template <typename... Arguments>
   void launch(const char* stage, const char* kernel_name, std::size_t global, std::size_t local,
               const Arguments&... arguments) {
-    const cl::Handle<cl_kernel> kernel = context_.programs().kernel(kSources, plan_.program_options(), kernel_name);
+    const cl::Handle<cl_kernel> kernel =
+        context_.programs().kernel(kSources, plan_.program_options(), kernel_name);
     cl::set_arguments(kernel.get(), arguments...);
     times_.add(stage, cl::enqueue(context_.queue(), kernel.get(), global, local));
   }
 
   // One work-group per item.
   template <typename... Arguments>
-  void launch_groups(const char* stage, const char* kernel_name, std::size_t groups, const Arguments&... arguments) {
+  void launch_groups(const char* stage, const char* kernel_name, std::size_t groups,
+                     const Arguments&... arguments) {
     launch(stage, kernel_name, groups * plan_.work_group_size, plan_.work_group_size, arguments...);
   }
 
   // One work-item per element; the kernel ignores those past the end.
   template <typename... Arguments>
-  void launch_items(const char* stage, const char* kernel_name, std::size_t items, const Arguments&... arguments) {
+  void launch_items(const char* stage, const char* kernel_name, std::size_t items,
+                    const Arguments&... arguments) {
     const std::size_t local = plan_.item_group_size;
     launch(stage, kernel_name, (items + local - 1) / local * local, local, arguments...);
   }
@@ -81,11 +85,13 @@ class DeviceBuilder {
     context_.fill(inner_rank_, 0);
     launch_groups("prepare", "prepare_primitives", chunks, triangles_, primitives_a_, chunk_bounds_, status_,
                   plan_.count, plan_.chunk_size);
-    const auto bounds = context_.download_values<GnBounds>(chunk_bounds_, 2 * static_cast<std::size_t>(chunks));
+    const auto bounds =
+        context_.download_values<GnBounds>(chunk_bounds_, 2 * static_cast<std::size_t>(chunks));
     const std::uint32_t first_bad = context_.download_values<std::uint32_t>(status_, 1).front();
     if (first_bad != GN_NONE) {
-      throw Error(ErrorCode::kBadScene, "triangle " + std::to_string(first_bad) +
-                                            " has a coordinate that is not finite or beyond 2^48; drop or repair it");
+      throw Error(ErrorCode::kBadScene,
+                  "triangle " + std::to_string(first_bad) +
+                      " has a coordinate that is not finite or beyond 2^48; drop or repair it");
     }
     const GnTask root = root_task(bounds, plan_.count);
     if (plan_.count > plan_.subtree_size) return {root};
@@ -98,12 +104,12 @@ class DeviceBuilder {
     context_.upload_values<GnTask>(tasks_, level.tasks);
     context_.upload_values<GnChunk>(chunks_, level.chunks);
     context_.upload_values<std::uint32_t>(first_chunk_, level.first_chunk);
-    launch_groups("bin", "bin_chunks", level.chunks.size(), primitives_a_, primitives_b_, tasks_, chunks_, chunk_bins_,
-                  chunk_counts_);
+    launch_groups("bin", "bin_chunks", level.chunks.size(), primitives_a_, primitives_b_, tasks_, chunks_,
+                  chunk_bins_, chunk_counts_);
     launch_groups("split", "split_tasks", level.tasks.size(), tasks_, chunks_, first_chunk_, chunk_bins_,
                   chunk_counts_, children_, options_.median_depth);
-    launch_groups("partition", "partition_chunks", level.chunks.size(), primitives_a_, primitives_b_, tasks_, chunks_,
-                  chunk_bounds_);
+    launch_groups("partition", "partition_chunks", level.chunks.size(), primitives_a_, primitives_b_, tasks_,
+                  chunks_, chunk_bounds_);
     const auto children = context_.download_values<GnChildren>(children_, level.tasks.size());
     const auto bounds = context_.download_values<GnBounds>(chunk_bounds_, 4 * level.chunks.size());
     level.tasks = context_.download_values<GnTask>(tasks_, level.tasks.size());
@@ -114,10 +120,10 @@ class DeviceBuilder {
     const auto root_count = large.roots.size();
     const cl::Buffer roots = context_.create_buffer("subtree_roots", root_count * sizeof(GnTask));
     context_.upload_values<GnTask>(roots, large.roots);
-    const cl::Buffer max_depth = context_.create_buffer("max_depth", sizeof(std::uint32_t));
-    context_.fill(max_depth, 0);
-    launch_groups("subtrees", "build_subtrees", root_count, primitives_a_, primitives_b_, roots, sparse_nodes_,
-                  inner_rank_, order_, max_depth, options_.max_leaf_size, options_.median_depth,
+    const cl::Buffer outcome = context_.create_buffer("subtree_outcome", 2 * sizeof(std::uint32_t));
+    context_.fill(outcome, 0);
+    launch_groups("subtrees", "build_subtrees", root_count, primitives_a_, primitives_b_, roots,
+                  sparse_nodes_, inner_rank_, order_, outcome, options_.max_leaf_size, options_.median_depth,
                   options_.cost_traversal, options_.cost_triangle);
     if (!large.nodes.empty()) {
       const auto count = static_cast<std::uint32_t>(large.nodes.size());
@@ -127,7 +133,13 @@ class DeviceBuilder {
       context_.upload_values<std::uint32_t>(slots, large.slots);
       launch_items("compact", "enter_large_nodes", count, nodes, slots, sparse_nodes_, inner_rank_, count);
     }
-    depth_ = context_.download_values<std::uint32_t>(max_depth, 1).front();
+    const auto depth_and_unfinished = context_.download_values<std::uint32_t>(outcome, 2);
+    if (depth_and_unfinished[1] != 0) {
+      throw Error(ErrorCode::kDevice, context_.device().name + " ended the loops of " +
+                                          std::to_string(depth_and_unfinished[1]) +
+                                          " subtrees before they were built; use another device");
+    }
+    depth_ = depth_and_unfinished[0];
   }
 
   DeviceBvh compact() {
@@ -143,7 +155,8 @@ class DeviceBuilder {
     tree.nodes = context_.create_buffer("nodes", tree.node_count * sizeof(Node));
     tree.leaf_triangles = allocate("leaf_triangles");
     launch_items("compact", "emit_nodes", plan_.count, sparse_nodes_, inner_rank_, tree.nodes, plan_.count);
-    launch_items("gather", "gather_triangles", plan_.count, triangles_, order_, tree.leaf_triangles, plan_.count);
+    launch_items("gather", "gather_triangles", plan_.count, triangles_, order_, tree.leaf_triangles,
+                 plan_.count);
     tree.order = std::move(order_);
     return tree;
   }
@@ -154,10 +167,13 @@ class DeviceBuilder {
   cl_mem triangles_;
   cl::StageTimes times_;
   std::uint32_t depth_ = 0;
-  cl::Buffer primitives_a_{{}, "primitives_a"}, primitives_b_{{}, "primitives_b"}, sparse_nodes_{{}, "sparse_nodes"};
+  cl::Buffer primitives_a_{{}, "primitives_a"}, primitives_b_{{}, "primitives_b"},
+      sparse_nodes_{{}, "sparse_nodes"};
   cl::Buffer inner_rank_{{}, "inner_rank"}, rank_sums_{{}, "rank_sums"}, status_{{}, "status"};
-  cl::Buffer chunk_bounds_{{}, "chunk_bounds"}, chunk_bins_{{}, "chunk_bins"}, chunk_counts_{{}, "chunk_counts"};
-  cl::Buffer chunks_{{}, "chunks"}, tasks_{{}, "tasks"}, first_chunk_{{}, "first_chunk"}, children_{{}, "children"};
+  cl::Buffer chunk_bounds_{{}, "chunk_bounds"}, chunk_bins_{{}, "chunk_bins"},
+      chunk_counts_{{}, "chunk_counts"};
+  cl::Buffer chunks_{{}, "chunks"}, tasks_{{}, "tasks"}, first_chunk_{{}, "first_chunk"},
+      children_{{}, "children"};
   cl::Buffer order_{{}, "order"};
 };
 
@@ -175,12 +191,14 @@ Node empty_root() {
 void refuse_what_does_not_fit(const cl::DeviceInfo& device, const BuildPlan& plan) {
   std::uint64_t total = 0;
   for (const BufferNeed& need : plan.buffers()) {
-    if (const auto reason = cl::why_not_fit(device, need.name, need.bytes)) throw Error(ErrorCode::kOutOfMemory, *reason);
+    if (const auto reason = cl::why_not_fit(device, need.name, need.bytes))
+      throw Error(ErrorCode::kOutOfMemory, *reason);
     total += need.bytes;
   }
   if (total > device.global_memory) {
-    throw Error(ErrorCode::kOutOfMemory, "the build's buffers need " + std::to_string(total) + " bytes together, but " +
-                                             device.name + " has " + std::to_string(device.global_memory) +
+    throw Error(ErrorCode::kOutOfMemory, "the build's buffers need " + std::to_string(total) +
+                                             " bytes together, but " + device.name + " has " +
+                                             std::to_string(device.global_memory) +
                                              "; use a smaller scene or another device");
   }
 }
@@ -198,8 +216,8 @@ DeviceBvh build_planned(const cl::Context& context, cl_mem triangles, const Buil
 
 }  // namespace
 
-DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> triangles, const BuildOptions& options,
-                       BuildReport* out, const Progress& progress) {
+DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> triangles,
+                       const BuildOptions& options, BuildReport* out, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const BuildPlan plan = plan_build(context.device(), triangles.size(), options);
   if (triangles.empty()) return upload_bvh(context, {}, {});
@@ -208,7 +226,8 @@ DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> tri
   context.upload_values<Triangle>(input, triangles);
   DeviceBvh tree = build_planned(context, input.mem.get(), options, plan, out, progress);
   if (out != nullptr) {
-    out->total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    out->total_ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
   return tree;
 }
@@ -221,13 +240,15 @@ DeviceBvh build_device(const cl::Context& context, cl_mem triangles, std::uint32
   std::size_t bytes = 0;
   cl::check(clGetMemObjectInfo(triangles, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr), "clGetMemObjectInfo");
   if (bytes / sizeof(Triangle) < triangle_count) {
-    throw Error(ErrorCode::kInvalidArgument, "the triangle buffer holds " + std::to_string(bytes) + " bytes, " +
-                                                 std::to_string(triangle_count) + " triangles need 36 each");
+    throw Error(ErrorCode::kInvalidArgument, "the triangle buffer holds " + std::to_string(bytes) +
+                                                 " bytes, " + std::to_string(triangle_count) +
+                                                 " triangles need 36 each");
   }
   refuse_what_does_not_fit(context.device(), plan);
   DeviceBvh tree = build_planned(context, triangles, options, plan, out, progress);
   if (out != nullptr) {
-    out->total_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    out->total_ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
   return tree;
 }

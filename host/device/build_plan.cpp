@@ -10,12 +10,41 @@ namespace gnomon {
 
 namespace {
 
-constexpr std::uint32_t ceil_div(std::uint64_t a, std::uint64_t b) { return static_cast<std::uint32_t>((a + b - 1) / b); }
+constexpr std::uint32_t ceil_div(std::uint64_t a, std::uint64_t b) {
+  return static_cast<std::uint32_t>((a + b - 1) / b);
+}
 
 // Enough subtrees that every compute unit gets several, none so large that it leaves the cache.
 std::uint32_t serial_subtree_size(const cl::DeviceInfo& device, std::uint64_t count) {
   const std::uint64_t share = count / (8ULL * std::max(1U, device.compute_units));
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(share, 1024, 16384));
+}
+
+// How many triangles a subtree, a chunk may have where the device ends long loops. A node's bins are cleared,
+// read back and swept in about 6 turns a bin, 48 more shared by a cooperative group's work-items; a triangle
+// makes up to two nodes, and half of the limit stays in reserve.
+void heed_loop_limit(BuildPlan& plan, const cl::DeviceInfo& device, const BuildOptions& options) {
+  const std::uint32_t limit = device.loop_limit;
+  const std::uint32_t width = plan.work_group_size;
+  const std::uint32_t turns_per_triangle = 4 * plan.bins * (6 + (width == 1 ? 0 : 48 / width));
+  const std::uint32_t subtree = limit / turns_per_triangle;
+  if (subtree < options.max_leaf_size) {
+    throw Error(ErrorCode::kInvalidArgument,
+                device.name + " ends loops after " + std::to_string(limit) + " turns: with " +
+                    std::to_string(plan.bins) + " bins leaves may hold at most " + std::to_string(subtree) +
+                    " triangles there, not " + std::to_string(options.max_leaf_size) +
+                    "; use fewer bins or another device");
+  }
+  plan.subtree_size = std::min(plan.subtree_size, subtree);
+  // One work-item sums up all chunks of a task in about bins turns each: few chunks, and none too long to
+  // walk through.
+  plan.chunk_size = std::max(plan.chunk_size, ceil_div(std::uint64_t{plan.count} * 2 * plan.bins, limit));
+  if (plan.chunk_size > limit / 4) {
+    throw Error(ErrorCode::kOutOfMemory, std::to_string(plan.count) + " triangles are too many for " +
+                                             device.name + ", which ends loops after " +
+                                             std::to_string(limit) +
+                                             " turns; use a smaller scene or another device");
+  }
 }
 
 }  // namespace
@@ -67,19 +96,25 @@ BuildPlan plan_build(const cl::DeviceInfo& device, std::uint64_t count, const Bu
   BuildPlan plan;
   plan.count = static_cast<std::uint32_t>(count);
   plan.bins = options.bins;
-  const auto widest = static_cast<std::uint32_t>(std::bit_floor(std::min<std::uint64_t>(device.max_work_group, 256)));
-  const std::uint32_t wanted = options.work_group_size != 0 ? options.work_group_size : device.is_cpu ? 1 : 128;
+  const auto widest =
+      static_cast<std::uint32_t>(std::bit_floor(std::min<std::uint64_t>(device.max_work_group, 256)));
+  const std::uint32_t wanted = options.work_group_size != 0 ? options.work_group_size
+                               : device.is_cpu              ? 1
+                                                            : 128;
   if (options.work_group_size > widest) {
-    throw Error(ErrorCode::kInvalidArgument, "work_group_size " + std::to_string(options.work_group_size) + ", but " +
-                                                 device.name + " allows at most " + std::to_string(widest));
+    throw Error(ErrorCode::kInvalidArgument, "work_group_size " + std::to_string(options.work_group_size) +
+                                                 ", but " + device.name + " allows at most " +
+                                                 std::to_string(widest));
   }
   plan.work_group_size = std::min(wanted, widest);
   plan.item_group_size = std::min(64U, widest);
   const bool serial = plan.work_group_size == 1;
   const std::uint32_t subtree = serial ? serial_subtree_size(device, count) : 1024;
   // Large nodes must hold more than a leaf may, so that they always divide.
-  plan.subtree_size = std::max(options.subtree_size != 0 ? options.subtree_size : subtree, options.max_leaf_size);
+  plan.subtree_size =
+      std::max(options.subtree_size != 0 ? options.subtree_size : subtree, options.max_leaf_size);
   plan.chunk_size = options.chunk_size != 0 ? options.chunk_size : serial ? 8192 : 2048;
+  if (device.loop_limit != 0) heed_loop_limit(plan, device, options);
   plan.compact_chunk = serial ? 4096 : 512;
   plan.max_tasks = plan.count / plan.subtree_size + 1;
   plan.max_chunks = plan.count / plan.chunk_size + plan.max_tasks + 1;

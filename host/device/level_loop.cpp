@@ -50,7 +50,8 @@ Level make_level(std::vector<GnTask> tasks, std::uint32_t chunk_size) {
   for (std::uint32_t t = 0; t < level.tasks.size(); ++t) {
     level.first_chunk.push_back(static_cast<std::uint32_t>(level.chunks.size()));
     const GnTask& task = level.tasks[t];
-    for (std::uint32_t begin = task.begin; begin < task.end; begin += std::min(chunk_size, task.end - begin)) {
+    for (std::uint32_t begin = task.begin; begin < task.end;
+         begin += std::min(chunk_size, task.end - begin)) {
       GnChunk chunk{};
       chunk.task = t;
       chunk.begin = begin;
@@ -63,7 +64,8 @@ Level make_level(std::vector<GnTask> tasks, std::uint32_t chunk_size) {
 }
 
 std::vector<GnTask> next_tasks(const Level& level, std::span<const GnChildren> children,
-                               std::span<const GnBounds> bounds, std::uint32_t subtree_size, LargeNodes& large) {
+                               std::span<const GnBounds> bounds, std::uint32_t subtree_size,
+                               LargeNodes& large) {
   std::vector<GnTask> next;
   for (std::size_t t = 0; t < level.tasks.size(); ++t) {
     const GnTask& task = level.tasks[t];

@@ -19,6 +19,9 @@ using Hit = GnHit;
 struct TraceOptions {
   bool counters = false;               // also count boxes and triangles per ray; slower
   std::uint32_t work_group_size = 64;  // power of two up to the device's limit
+  // A ray's nodes and triangles per launch; rays that need more go on in another launch. 0: all in one, unless the
+  // device ends long loops (DeviceInfo::loop_limit). For devices that stop kernels which run for long.
+  std::uint32_t step_limit = 0;
 };
 
 // Answers of a batch. One of hits and occluded is filled, by the call made.
@@ -41,7 +44,8 @@ class Tracer {
   [[nodiscard]] TraceResult any(std::span<const Ray> rays, const Progress& progress = {}) const;
 
   // Enqueue on the context's queue and return: rays holds `count` GnRay; hits receives `count` GnHit, occluded `count`
-  // uint32. Waits for the given events on the device. Options' counters are not available this way.
+  // uint32. Waits for the given events on the device. Options' counters are not available this way. With a step
+  // limit this enqueues as many passes as the tree could need at worst, and needs memory for `count` stacks.
   [[nodiscard]] cl::Handle<cl_event> enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
                                                      std::span<const cl_event> wait_for = {}) const;
   [[nodiscard]] cl::Handle<cl_event> enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
@@ -50,9 +54,15 @@ class Tracer {
   [[nodiscard]] std::uint64_t invalid_rays() const;
 
  private:
-  [[nodiscard]] cl::Handle<cl_event> enqueue(const cl::Handle<cl_kernel>& kernel, cl_mem rays, cl_mem out,
-                                             cl_mem counters, std::uint32_t count,
-                                             std::span<const cl_event> wait_for) const;
+  struct Launch;
+  struct Passes;
+  [[nodiscard]] cl::Handle<cl_event> enqueue(const Launch& launch, std::span<const cl_event> wait_for) const;
+  [[nodiscard]] Passes make_passes(std::size_t rays) const;
+  [[nodiscard]] cl::Handle<cl_event> enqueue_pass(const Launch& launch, const Passes& passes, std::uint32_t pass,
+                                                  std::span<const cl_event> wait_for) const;
+  [[nodiscard]] cl::Handle<cl_event> enqueue_only(const Launch& launch, std::span<const cl_event> wait_for) const;
+  [[nodiscard]] std::uint32_t most_passes() const;
+  [[nodiscard]] double run(const Launch& launch, const Passes& passes) const;
   template <typename Answer>
   void trace_all(const cl::Handle<cl_kernel>& kernel, std::span<const Ray> rays, std::vector<Answer>& answers,
                  TraceResult& result, const Progress& progress) const;
@@ -60,6 +70,8 @@ class Tracer {
   const cl::Context& context_;
   const DeviceBvh& tree_;
   TraceOptions options_;
+  std::uint32_t stack_size_ = 0;
+  std::uint32_t step_limit_ = 0;  // TraceOptions::step_limit, with the device's say
   cl::Handle<cl_kernel> closest_;
   cl::Handle<cl_kernel> any_;
   cl::Buffer invalid_;

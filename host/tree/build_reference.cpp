@@ -31,9 +31,8 @@ GnPrimitive primitive_of(const Triangle& triangle, std::uint32_t index) {
                                               " has a coordinate that is not finite or beyond 2^48; drop or repair it");
       }
     }
-    // Adding +0 turns -0 into +0, as prepare.cl does.
-    primitive.lo[k] = gn_min(gn_min(triangle.v0[k], triangle.v1[k]), triangle.v2[k]) + 0.0F;
-    primitive.hi[k] = gn_max(gn_max(triangle.v0[k], triangle.v1[k]), triangle.v2[k]) + 0.0F;
+    primitive.lo[k] = gn_without_negative_zero(gn_min(gn_min(triangle.v0[k], triangle.v1[k]), triangle.v2[k]));
+    primitive.hi[k] = gn_without_negative_zero(gn_max(gn_max(triangle.v0[k], triangle.v1[k]), triangle.v2[k]));
   }
   return primitive;
 }

@@ -159,9 +159,9 @@ GN_INLINE int gn_signs_agree(const GnRayFrame* ray, const gn_f32* v0, const gn_f
   return !(positive && negative) && (positive || negative || open);
 }
 
-// Fills t, u, v from the edges' determinants. t is a mean of the corners' distances with weights of one sign:
-// well-conditioned however thin the triangle.
-GN_INLINE void gn_fill_hit(const GnRayFrame* ray, const gn_f32* along, GnWide* weights, GnHit* hit) {
+// Fills u, v and t / t_unit from the edges' determinants and the corners' distances along axis kz. t is a mean of these
+// distances with weights of one sign: well-conditioned however thin the triangle.
+GN_INLINE void gn_fill_hit(const GnWide* r, gn_u32 kz, gn_f32 direction, gn_f32 t_unit, GnWide* weights, GnHit* hit) {
   GnWide sum = gn_wide_add(gn_wide_add(weights[0], weights[1]), weights[2]);
   GnWide distance = gn_wide_of(0.0f);
   const int side = gn_wide_sign(sum);
@@ -175,38 +175,47 @@ GN_INLINE void gn_fill_hit(const GnRayFrame* ray, const gn_f32* along, GnWide* w
     for (i = 0; i < 3; ++i) weights[i] = gn_wide_of(1.0f);
     sum = gn_wide_of(3.0f);
   }
-  for (i = 0; i < 3; ++i) {
-    const GnWide offset = gn_wide_difference(along[i], ray->origin[ray->kz]);
-    distance = gn_wide_add(distance, gn_wide_multiply(weights[i], offset));
-  }
-  hit->t = gn_wide_ratio(distance, gn_wide_scale(sum, ray->direction[ray->kz]));
+  for (i = 0; i < 3; ++i) distance = gn_wide_add(distance, gn_wide_multiply(weights[i], r[3 * i + kz]));
+  hit->t = gn_wide_ratio(distance, gn_wide_scale(sum, direction)) * t_unit;
   hit->u = gn_wide_ratio(weights[1], sum);
   hit->v = gn_wide_ratio(weights[2], sum);
+}
+
+// The corners seen from the ray's origin; returns the largest distance along an axis.
+GN_INLINE gn_f32 gn_corners_from(const gn_f32* origin, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2,
+                                 GnWide* r) {
+  gn_f32 largest = 0.0f;
+  int k;
+  for (k = 0; k < 3; ++k) {
+    r[k] = gn_wide_difference(v0[k], origin[k]);
+    r[3 + k] = gn_wide_difference(v1[k], origin[k]);
+    r[6 + k] = gn_wide_difference(v2[k], origin[k]);
+    largest = gn_max(largest, gn_abs(v0[k] - origin[k]));
+    largest = gn_max(largest, gn_abs(v1[k] - origin[k]));
+    largest = gn_max(largest, gn_abs(v2[k] - origin[k]));
+  }
+  return largest;
 }
 
 // Ray against closed triangle, either side. On a hit fills t, u, v of `hit` (not its primitive) and returns 1.
 GN_INLINE int gn_triangle_hit(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2,
                               GnHit* hit) {
   GnWide r[9], weights[3], permanents[3];
-  gn_f32 along[3];
+  gn_f32 direction[3], unit, direction_unit;
   const int verdict = gn_triangle_filter(ray, v0, v1, v2);
-  int i, k;
+  int i;
   if (verdict == 0) return 0;
-  for (k = 0; k < 3; ++k) {
-    r[k] = gn_wide_difference(v0[k], ray->origin[k]);
-    r[3 + k] = gn_wide_difference(v1[k], ray->origin[k]);
-    r[6 + k] = gn_wide_difference(v2[k], ray->origin[k]);
-  }
+  unit = gn_wide_unit(gn_corners_from(ray->origin, v0, v1, v2, r));
+  direction_unit = gn_wide_unit(ray->direction[ray->kz]);
+  for (i = 0; i < 9; ++i) r[i] = gn_wide_times_unit(r[i], unit);
+  for (i = 0; i < 3; ++i) direction[i] = ray->direction[i] * direction_unit;
   for (i = 0; i < 3; ++i) {
     const int next = i == 2 ? 0 : i + 1;
     const int previous = i == 0 ? 2 : i - 1;
-    weights[i] = gn_wide_determinant(ray->direction, r + 3 * next, r + 3 * previous, permanents + i);
+    weights[i] = gn_wide_determinant(direction, r + 3 * next, r + 3 * previous, permanents + i);
   }
   if (verdict < 0 && !gn_signs_agree(ray, v0, v1, v2, weights, permanents)) return 0;
-  along[0] = v0[ray->kz];
-  along[1] = v1[ray->kz];
-  along[2] = v2[ray->kz];
-  gn_fill_hit(ray, along, weights, hit);
+  gn_fill_hit(r, ray->kz, direction[ray->kz], direction_unit / unit, weights, hit);
   return 1;
 }
 

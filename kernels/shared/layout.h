@@ -73,4 +73,18 @@ typedef struct GnRayCounters {
 } GnRayCounters;
 GN_SIZE_IS(GnRayCounters, 8);
 
+// Where a ray's traversal stands between two passes of a tracer that works in passes (trace.cl).
+typedef struct GnWalk {
+  GnHit best;
+  gn_f32 limit;      // of box entries still of interest
+  gn_u32 found;
+  gn_u32 boxes;
+  gn_u32 triangles;
+  gn_u32 current;    // the node to visit next; GN_NONE: not begun
+  gn_u32 height;     // of the stack of waiting nodes
+  gn_u32 steps;      // nodes visited and triangles tested in this pass
+  gn_u32 done;
+} GnWalk;
+GN_SIZE_IS(GnWalk, 48);
+
 #endif

@@ -50,6 +50,10 @@ GN_INLINE gn_f32 gn_float_of(gn_u32 bits) {
 }
 #endif
 
+// -0 becomes +0, so that minima do not depend on the order of their arguments. By bits: adding +0 does the same in IEEE
+// arithmetic, but compilers drop it (Mesa's llvmpipe).
+GN_INLINE gn_f32 gn_without_negative_zero(gn_f32 x) { return gn_bits_of(x) == 0x80000000u ? 0.0f : x; }
+
 // Ternaries, not fmin/fmax: one instruction on every target, and b wins when a comparison meets a NaN.
 GN_INLINE gn_f32 gn_min(gn_f32 a, gn_f32 b) { return a < b ? a : b; }
 GN_INLINE gn_f32 gn_max(gn_f32 a, gn_f32 b) { return a > b ? a : b; }

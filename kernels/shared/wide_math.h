@@ -23,6 +23,15 @@ GN_INLINE int gn_wide_sign(GnWide a) { return (a > 0.0) - (a < 0.0); }
 // Whether |a| exceeds the error bound of a value with this permanent.
 GN_INLINE int gn_wide_is_certain(GnWide a, GnWide permanent) { return fabs(a) > GN_WIDE_EPSILON * permanent; }
 GN_INLINE gn_f32 gn_wide_ratio(GnWide a, GnWide b) { return (gn_f32)(a / b); }
+// Products of four floats stay far inside double's range: nothing needs scaling.
+GN_INLINE gn_f32 gn_wide_unit(gn_f32 x) {
+  (void)x;
+  return 1.0f;
+}
+GN_INLINE GnWide gn_wide_times_unit(GnWide a, gn_f32 unit) {
+  (void)unit;
+  return a;
+}
 
 #else
 
@@ -102,6 +111,21 @@ GN_INLINE int gn_wide_sign(GnWide a) { return (a.high > 0.0f) - (a.high < 0.0f);
 // 2^-40 of the permanent covers the determinant's rounding; 1e-33 covers low parts lost to underflow.
 GN_INLINE int gn_wide_is_certain(GnWide a, GnWide permanent) {
   return gn_abs(a.high) > 9.0949470e-13f * permanent.high + 1e-33f;
+}
+
+// The power of two that brings x near 1 (clamped to float's normal range): products of three coordinates of 2^48 would
+// overflow, of 2^-48 would lose their low parts.
+GN_INLINE gn_f32 gn_wide_unit(gn_f32 x) {
+  const gn_u32 exponent = gn_bits_of(x) & 0x7f800000u;
+  if (exponent == 0u) return gn_float_of(0x7e800000u);  // 2^126
+  return gn_float_of(exponent >= 0x7e800000u ? 0x00800000u : 0x7f000000u - exponent);
+}
+
+GN_INLINE GnWide gn_wide_times_unit(GnWide a, gn_f32 unit) {
+  GnWide r;
+  r.high = a.high * unit;
+  r.low = a.low * unit;
+  return r;
 }
 
 // One float quotient and one correction by its exact remainder: the division itself may be off by 2.5 ulp.

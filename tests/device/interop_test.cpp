@@ -1,6 +1,7 @@
 // Life in somebody else's OpenCL program: their context, queue and buffers; and two devices at once.
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cstring>
 #include <thread>
 
 #include "gnomon/cl/launch.h"
@@ -51,7 +52,8 @@ struct Foreign {
 
 }  // namespace
 
-TEST_CASE("builds and traces on the caller's context, queue and buffers, and leaves them as they were", "[portable]") {
+TEST_CASE("builds and traces on the caller's context, queue and buffers, and leaves them as they were",
+          "[portable]") {
   const Foreign foreign;
   const cl_uint contexts = foreign.context_references();
   const cl_uint queues = foreign.queue_references();
@@ -68,16 +70,25 @@ TEST_CASE("builds and traces on the caller's context, queue and buffers, and lea
             gnomon::tree_hash(gnomon::build_reference(triangles)));
     const gnomon::Tracer tracer(context, tree);
     const auto expected = tracer.closest(rays).hits;
-    const auto event = tracer.enqueue_closest(ray_buffer, hit_buffer, static_cast<std::uint32_t>(rays.size()));
+    const auto event =
+        tracer.enqueue_closest(ray_buffer, hit_buffer, static_cast<std::uint32_t>(rays.size()));
     cl::wait(event);
     std::vector<GnHit> hits(rays.size());
-    REQUIRE(clEnqueueReadBuffer(foreign.queue, hit_buffer, CL_TRUE, 0, hits.size() * sizeof(GnHit), hits.data(), 0,
-                                nullptr, nullptr) == CL_SUCCESS);
+    REQUIRE(clEnqueueReadBuffer(foreign.queue, hit_buffer, CL_TRUE, 0, hits.size() * sizeof(GnHit),
+                                hits.data(), 0, nullptr, nullptr) == CL_SUCCESS);
     for (std::size_t i = 0; i < hits.size(); ++i) {
       CAPTURE(i);
       REQUIRE(hits[i].primitive == expected[i].primitive);
       REQUIRE(hits[i].t == expected[i].t);
     }
+    gnomon::TraceOptions in_passes;
+    in_passes.step_limit = 20;
+    const gnomon::Tracer stepper(context, tree, in_passes);
+    cl::wait(stepper.enqueue_closest(ray_buffer, hit_buffer, static_cast<std::uint32_t>(rays.size())));
+    std::vector<GnHit> same(rays.size());
+    REQUIRE(clEnqueueReadBuffer(foreign.queue, hit_buffer, CL_TRUE, 0, same.size() * sizeof(GnHit),
+                                same.data(), 0, nullptr, nullptr) == CL_SUCCESS);
+    REQUIRE(std::memcmp(same.data(), hits.data(), hits.size() * sizeof(GnHit)) == 0);
   }
   for (cl_mem mem : {triangle_buffer, ray_buffer, hit_buffer}) REQUIRE(clReleaseMemObject(mem) == CL_SUCCESS);
   // Drivers let go of finished commands in threads of their own: what we hold is known once they have.
@@ -102,7 +113,8 @@ TEST_CASE("enqueueing a trace does not wait for what the caller has in the queue
   cl_int status = CL_SUCCESS;
   cl_event gate = clCreateUserEvent(foreign.context, &status);
   REQUIRE(status == CL_SUCCESS);
-  const auto event = tracer.enqueue_any(ray_buffer, out, static_cast<std::uint32_t>(rays.size()), std::span(&gate, 1));
+  const auto event =
+      tracer.enqueue_any(ray_buffer, out, static_cast<std::uint32_t>(rays.size()), std::span(&gate, 1));
   cl_int state = CL_COMPLETE;
   clGetEventInfo(event.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state, &state, nullptr);
   REQUIRE(state > CL_COMPLETE);
@@ -122,7 +134,8 @@ TEST_CASE("a triangle buffer that is too small and an out-of-order queue are ref
   cl_command_queue unordered = clCreateCommandQueue(foreign.context, foreign.device.device,
                                                     CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE, &status);
   if (status == CL_SUCCESS) {
-    REQUIRE_THROWS_WITH(cl::Context(foreign.context, foreign.device.device, unordered), Catch::Contains("in-order"));
+    REQUIRE_THROWS_WITH(cl::Context(foreign.context, foreign.device.device, unordered),
+                        Catch::Contains("in-order"));
     clReleaseCommandQueue(unordered);
   }
 }
@@ -136,7 +149,8 @@ TEST_CASE("every device in the list builds the same tree") {
     if (!device.available) continue;
     CAPTURE(device.name, device.index);
     const cl::Context context(device);
-    REQUIRE(gnomon::tree_hash(gnomon::download_bvh(context, gnomon::build_device(context, triangles))) == expected);
+    REQUIRE(gnomon::tree_hash(gnomon::download_bvh(context, gnomon::build_device(context, triangles))) ==
+            expected);
   }
 }
 

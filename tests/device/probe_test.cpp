@@ -1,4 +1,5 @@
-// What the host assumes of the device's compiler: struct layout, unfused arithmetic, the shared hit functions.
+// What the host assumes of the device's compiler: struct layout, unfused arithmetic, the shared hit
+// functions.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstddef>
@@ -34,14 +35,27 @@ cl::Buffer buffer_of(const char* name, const std::vector<T>& values) {
 }  // namespace
 
 TEST_CASE("the device lays out every shared struct as the host does", "[portable][memcheck]") {
-  const cl::Buffer out = context().create_buffer("layout", 17 * sizeof(std::uint32_t));
+  const cl::Buffer out = context().create_buffer("layout", 18 * sizeof(std::uint32_t));
   run("probe_layout", 1, out);
-  const std::vector<std::uint32_t> expected = {
-      sizeof(GnTriangle), sizeof(GnLeafTriangle), sizeof(GnPrimitive), sizeof(GnNode), sizeof(GnRay), sizeof(GnHit),
-      sizeof(GnRayCounters), sizeof(GnBin), sizeof(GnSplit), sizeof(GnTask), sizeof(GnChunk), sizeof(GnChildren),
-      offsetof(GnLeafTriangle, primitive), offsetof(GnNode, hi), offsetof(GnRay, direction), offsetof(GnTask, buffer),
-      context().device().fp64 ? 1U : 0U};
-  REQUIRE(context().download_values<std::uint32_t>(out, 17) == expected);
+  const std::vector<std::uint32_t> expected = {sizeof(GnTriangle),
+                                               sizeof(GnLeafTriangle),
+                                               sizeof(GnPrimitive),
+                                               sizeof(GnNode),
+                                               sizeof(GnRay),
+                                               sizeof(GnHit),
+                                               sizeof(GnRayCounters),
+                                               sizeof(GnBin),
+                                               sizeof(GnSplit),
+                                               sizeof(GnTask),
+                                               sizeof(GnChunk),
+                                               sizeof(GnChildren),
+                                               offsetof(GnLeafTriangle, primitive),
+                                               offsetof(GnNode, hi),
+                                               offsetof(GnRay, direction),
+                                               offsetof(GnTask, buffer),
+                                               context().device().fp64 ? 1U : 0U,
+                                               sizeof(GnWalk)};
+  REQUIRE(context().download_values<std::uint32_t>(out, 18) == expected);
 }
 
 TEST_CASE("arithmetic that decides trees has the same bits on the device", "[portable][memcheck]") {
@@ -51,12 +65,14 @@ TEST_CASE("arithmetic that decides trees has the same bits on the device", "[por
   for (std::size_t i = 0; i < kCount; ++i) {
     x.push_back(random.between(-1e3F, 1e3F));
     y.push_back(random.between(-1.0F, 1.0F));
-    z.push_back(-x.back() * y.back() * random.between(0.999F, 1.001F));  // cancellation shows fused operations
+    z.push_back(-x.back() * y.back() *
+                random.between(0.999F, 1.001F));  // cancellation shows fused operations
   }
   const cl::Buffer fused = context().create_buffer("fused", kCount * 4);
   const cl::Buffer reciprocal = context().create_buffer("reciprocal", kCount * 4);
   const cl::Buffer bin = context().create_buffer("bin", kCount * 4);
-  run("probe_arithmetic", kCount, buffer_of("x", x), buffer_of("y", y), buffer_of("z", z), fused, reciprocal, bin);
+  run("probe_arithmetic", kCount, buffer_of("x", x), buffer_of("y", y), buffer_of("z", z), fused, reciprocal,
+      bin);
   const auto got_fused = context().download_values<float>(fused, kCount);
   const auto got_reciprocal = context().download_values<float>(reciprocal, kCount);
   const auto got_bin = context().download_values<std::uint32_t>(bin, kCount);
@@ -92,7 +108,8 @@ TEST_CASE("hits and box entries on the device are the host's", "[portable][memch
     GnHit hit{};
     const GnTriangle& t = triangles[i];
     const bool expected = gn_triangle_hit(&frame, t.v0, t.v1, t.v2, &hit) != 0;
-    const bool undecided = !context().device().fp64 && i % 3 == 0;  // pairs of floats may call a corner inside
+    const bool undecided =
+        !context().device().fp64 && i % 3 == 0;  // pairs of floats may call a corner inside
     if (!undecided || expected) REQUIRE((got_hits[i].primitive != GN_NONE) == expected);
     if (!expected) continue;
     met += 1;
@@ -108,6 +125,20 @@ TEST_CASE("hits and box entries on the device are the host's", "[portable][memch
     if (entry < INFINITY && got_entries[i] < INFINITY) REQUIRE(got_entries[i] == Approx(entry).epsilon(1e-6));
   }
   REQUIRE(met > 100);
+}
+
+TEST_CASE("loops make all their turns, or the device is known to end them", "[portable]") {
+  constexpr std::uint32_t kAsked = 200'000;
+  const cl::Buffer turns = context().create_buffer("turns", sizeof(std::uint32_t));
+  const cl::Buffer value = context().create_buffer("value", sizeof(std::uint32_t));
+  const auto kernel = context().programs().kernel({"loop_limit.cl"}, "", "count_turns");
+  for (const std::uint32_t asked : {1000U, kAsked}) {
+    cl::set_arguments(kernel.get(), turns, value, asked);
+    cl::wait(cl::enqueue(context().queue(), kernel.get(), 1, 1));
+    const std::uint32_t made = context().download_values<std::uint32_t>(turns, 1).front();
+    const std::uint32_t limit = context().device().loop_limit;
+    REQUIRE(made == (limit == 0 ? asked : std::min(asked, limit)));
+  }
 }
 
 TEST_CASE("every kernel file compiles by itself", "[portable]") {

@@ -20,7 +20,8 @@ struct Traced {
   gnomon::TraceResult any;
 };
 
-Traced trace(const std::vector<GnTriangle>& triangles, const std::vector<GnRay>& rays, bool counters = false) {
+Traced trace(const std::vector<GnTriangle>& triangles, const std::vector<GnRay>& rays,
+             bool counters = false) {
   const auto tree = gnomon::build_device(context(), triangles);
   gnomon::TraceOptions options;
   options.counters = counters;
@@ -28,14 +29,15 @@ Traced trace(const std::vector<GnTriangle>& triangles, const std::vector<GnRay>&
   return {tracer.closest(rays), tracer.any(rays)};
 }
 
-gnomon::OracleReport judge(const std::vector<GnTriangle>& triangles, const std::vector<GnRay>& rays, const Traced& traced) {
+gnomon::OracleReport judge(const std::vector<GnTriangle>& triangles, const std::vector<GnRay>& rays,
+                           const Traced& traced) {
   gnomon::OracleOptions options;
   options.max_rays = rays.size();
   return gnomon::judge(triangles, rays, traced.closest.hits, traced.any.occluded, options);
 }
 
-// Lost hits, false hits, wrong triangles: none, on every device. Pairs of floats may call a ray that misses a corner by
-// 2^-40 a hit, so without fp64 only losses are counted for rays aimed at corners.
+// Lost hits, false hits, wrong triangles: none, on every device. Pairs of floats may call a ray that misses a
+// corner by 2^-40 a hit, so without fp64 only losses are counted for rays aimed at corners.
 void require_faultless(const std::vector<GnTriangle>& triangles, const std::vector<GnRay>& rays, bool aimed) {
   const gnomon::OracleReport report = judge(triangles, rays, trace(triangles, rays));
   REQUIRE(report.rays_judged == rays.size());
@@ -64,8 +66,8 @@ TEST_CASE("rays aimed at corners and edges of a soup far from the origin lose no
       const float* a = gnomon::test::corner(t, random.below(3));
       const float* b = gnomon::test::corner(t, random.below(3));
       const float target[3] = {0.5F * (a[0] + b[0]), 0.5F * (a[1] + b[1]), 0.5F * (a[2] + b[2])};
-      rays.push_back(gnomon::test::aimed({offset + random.between(-5, 15), offset + random.between(-5, 15), offset - 3},
-                                         target));
+      rays.push_back(gnomon::test::aimed(
+          {offset + random.between(-5, 15), offset + random.between(-5, 15), offset - 3}, target));
     }
     require_faultless(triangles, rays, true);
   }
@@ -118,8 +120,9 @@ TEST_CASE("tmin and tmax are inclusive and honoured", "[portable]") {
 
 TEST_CASE("a ray that starts on a surface meets it at t = 0, unless tmin says otherwise") {
   const auto triangles = gnomon::test::grid(2, 0.0F);
-  const Traced traced = trace(triangles, {ray({0.7F, 0, 0.4F}, {0, 1, 0}), ray({0.7F, 0, 0.4F}, {0, 1, 0}, 1e-6F),
-                                          ray({1, 0, 1}, {0.3F, -1, 0.2F})});
+  const Traced traced =
+      trace(triangles, {ray({0.7F, 0, 0.4F}, {0, 1, 0}), ray({0.7F, 0, 0.4F}, {0, 1, 0}, 1e-6F),
+                        ray({1, 0, 1}, {0.3F, -1, 0.2F})});
   REQUIRE(traced.closest.hits[0].t == 0.0F);
   REQUIRE(traced.closest.hits[1].primitive == GN_NONE);
   REQUIRE(traced.closest.hits[2].t == 0.0F);
@@ -171,9 +174,10 @@ TEST_CASE("every awkward input is traced faultlessly", "[portable]") {
       const float size = std::max({std::fabs(a[0]), std::fabs(a[1]), std::fabs(a[2]), 1.0F}) * 0.01F + 5.0F;
       const float target[3] = {(t.v0[0] + t.v1[0] + t.v2[0]) / 3, (t.v0[1] + t.v1[1] + t.v2[1]) / 3,
                                (t.v0[2] + t.v1[2] + t.v2[2]) / 3};
-      rays.push_back(gnomon::test::aimed({a[0] + random.between(-size, size), a[1] + random.between(-size, size),
-                                          a[2] + random.between(-size, size)},
-                                         target));
+      rays.push_back(
+          gnomon::test::aimed({a[0] + random.between(-size, size), a[1] + random.between(-size, size),
+                               a[2] + random.between(-size, size)},
+                              target));
     }
     require_faultless(triangles, rays, true);
   }
@@ -192,7 +196,8 @@ TEST_CASE("hits and work counters equal the reference traversal's, bit for bit, 
     REQUIRE(traced.closest.hits[i].primitive == closest.hits[i].primitive);
     REQUIRE((traced.any.occluded[i] == 1) == (any.hits[i].primitive != GN_NONE));
     differing += std::memcmp(&traced.closest.hits[i], &closest.hits[i], sizeof(GnHit)) != 0 ? 1 : 0;
-    // Divisions may be rounded otherwise on a GPU, which moves a box entry by an ulp: visits are exact on CPUs.
+    // Divisions may be rounded otherwise on a GPU, which moves a box entry by an ulp: visits are exact on
+    // CPUs.
     if (context().device().is_cpu) {
       REQUIRE(traced.closest.counters[i].boxes == closest.counters[i].boxes);
       REQUIRE(traced.closest.counters[i].triangles == closest.counters[i].triangles);
@@ -207,7 +212,8 @@ TEST_CASE("counting work changes no answer") {
   const auto rays = gnomon::test::random_rays(500, 74);
   const Traced plain = trace(triangles, rays, false);
   const Traced counted = trace(triangles, rays, true);
-  REQUIRE(std::memcmp(plain.closest.hits.data(), counted.closest.hits.data(), rays.size() * sizeof(GnHit)) == 0);
+  REQUIRE(std::memcmp(plain.closest.hits.data(), counted.closest.hits.data(), rays.size() * sizeof(GnHit)) ==
+          0);
   REQUIRE(plain.any.occluded == counted.any.occluded);
   REQUIRE(plain.closest.counters.empty());
 }
@@ -233,6 +239,55 @@ TEST_CASE("a deep tree gets a stack as deep") {
     CAPTURE(i);
     REQUIRE(result.hits[i].primitive == i);
   }
+}
+
+// `count` triangles behind one another whose boxes a ray along (0.8, 0.8, z) meets, though not the triangles,
+// and behind them all one that it hits.
+std::vector<GnTriangle> corridor(std::uint32_t count) {
+  std::vector<GnTriangle> triangles;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto z = static_cast<float>(i);
+    triangles.push_back(gnomon::test::triangle({0, 0, z}, {1, 0, z}, {0, 1, z}));
+  }
+  triangles.push_back(gnomon::test::triangle({0, 0, 5000}, {2, 0, 5000}, {0, 2, 5000}));
+  return triangles;
+}
+
+void require_the_end_of_the_corridor_found(std::uint32_t count, std::uint32_t step_limit) {
+  CAPTURE(count, step_limit);
+  const std::vector<GnTriangle> triangles = corridor(count);
+  const std::vector<GnRay> rays = {
+      ray({0.8F, 0.8F, -1}, {0, 0, 1}), ray({0.8F, 0.8F, -1}, {0, 0, 1}, 0, 4000),
+      ray({0.1F, 0.1F, -1}, {0, 0, 1}), ray({std::nanf(""), 0.1F, -1}, {0, 0, 1}),
+      ray({0.7F, 0.7F, -1}, {0, 0, 1})};
+  const auto tree = gnomon::build_device(context(), triangles);
+  gnomon::TraceOptions options;
+  options.step_limit = step_limit;
+  options.counters = true;
+  const gnomon::Tracer tracer(context(), tree, options);
+  const auto closest = tracer.closest(rays);
+  const auto any = tracer.any(rays);
+  for (const std::size_t through : {0U, 4U}) {
+    REQUIRE(closest.hits[through].t == 5001.0F);
+    REQUIRE(closest.hits[through].primitive == count);
+    REQUIRE(closest.counters[through].triangles == count + 1);
+    REQUIRE(any.occluded[through] == 1);
+  }
+  REQUIRE(closest.hits[1].primitive == GN_NONE);
+  REQUIRE(any.occluded[1] == 0);
+  REQUIRE(closest.hits[2].primitive == 0);
+  REQUIRE(closest.invalid_rays == 1);
+  REQUIRE(any.invalid_rays == 1);
+}
+
+TEST_CASE("a ray that passes thousands of triangles before its hit finds it, in one go and in passes",
+          "[portable]") {
+  for (const std::uint32_t step_limit : {0U, 1U << 20U, 700U, 100U})
+    require_the_end_of_the_corridor_found(3000, step_limit);
+}
+
+TEST_CASE("passes keep to their buffers", "[memcheck]") {
+  require_the_end_of_the_corridor_found(60, 25);
 }
 
 TEST_CASE("batches larger than one launch are traced whole") {

@@ -57,3 +57,30 @@ TEST_CASE("without double, no ray aimed at a corner is lost that the oracle says
   }
   REQUIRE(met > 1000);
 }
+
+TEST_CASE("without double, sizes and directions from tiny to huge change neither decision nor t's precision") {
+  Random random(24);
+  int met = 0;
+  for (const int size : {-44, -20, 0, 20, 44}) {
+    for (const int length : {-60, 0, 60}) {
+      for (int i = 0; i < 3000; ++i) {
+        CAPTURE(size, length, i);
+        GnRay ray = gnomon::test::random_ray(random, -1.0F, 1.0F);
+        GnTriangle t = gnomon::test::soup(1, static_cast<std::uint32_t>(i), 4.0F, -5.0F)[0];
+        for (std::size_t k = 0; k < 3; ++k) {
+          ray.origin[k] = std::ldexp(ray.origin[k], size);
+          ray.direction[k] = std::ldexp(ray.direction[k], length);
+          for (float* v : {t.v0, t.v1, t.v2}) v[k] = std::ldexp(v[k], size);
+        }
+        const GnRayFrame frame = gn_ray_frame(&ray);
+        GnHit hit{};
+        const gnomon::ExactHit exact = gnomon::exact_intersect(ray, t);
+        REQUIRE((gn_triangle_hit(&frame, t.v0, t.v1, t.v2, &hit) != 0) == exact.inside);
+        if (!exact.inside) continue;
+        met += 1;
+        REQUIRE(std::fabs(hit.t - exact.t) <= 1.2e-7 * std::fabs(exact.t));
+      }
+    }
+  }
+  REQUIRE(met > 1000);
+}

@@ -1,5 +1,5 @@
-// Writes README's speed table from stored rows, between its markers, or checks that what stands there is what the rows
-// say. Also keeps README's example equal to the file the tests compile.
+// Writes README's speed table from stored rows, between its markers, or checks that what stands there is what
+// the rows say. Also keeps README's example equal to the file the tests compile.
 //
 //   readme_table ROWS.jsonl EXAMPLE.cpp README.md [--check]
 #include <cstdio>
@@ -50,23 +50,28 @@ std::string table(const std::string& rows) {
     if (row.at("schema") != 1 || row.at("bench") != "spine") continue;
     last = row;
     const bool build = row.at("task") == "build";
-    const std::string what = build ? "build" : row.at("task").get<std::string>() + ", " + row.at("rays").get<std::string>();
+    const std::string what =
+        build ? "build" : row.at("task").get<std::string>() + ", " + row.at("rays").get<std::string>();
     Line& line = lines[{row.at("scene"), build ? 0 : 1, what}];
-    line.ours = spread(row.at(build ? "gnomon_mtris_per_s" : "gnomon_mrays_per_s")) + (build ? " Mtris/s" : " Mrays/s");
+    line.ours = spread(row.at(build ? "gnomon_mtris_per_s" : "gnomon_mrays_per_s")) +
+                (build ? " Mtris/s" : " Mrays/s");
     line.ratio[row.value("peer_mode", "default")] = spread(row.at("ratio"));
   }
   if (lines.empty()) throw std::runtime_error("no rows of bench spine, schema 1");
-  std::string out = "One thread, process CPU time, paired in one process with " + last.at("peer").get<std::string>() +
-                    " on " + last.at("device").get<std::string>() + " (driver " + last.at("driver").get<std::string>() +
-                    "), " + std::to_string(last.at("ratio").at("n").get<int>()) + " rounds, commit " +
-                    last.at("commit").get<std::string>() +
-                    ".\nRatios are median (min–max) of Embree's time over ours: above 1 we are faster. Rates move with "
-                    "the machine, ratios far less.\n\n| scene | task | gnomon | against default | against ROBUST |\n"
-                    "|---|---|---|---|---|\n";
+  std::string out =
+      "One thread, process CPU time, paired in one process with " + last.at("peer").get<std::string>() +
+      " on " + last.at("device").get<std::string>() + " (driver " + last.at("driver").get<std::string>() +
+      "), " + std::to_string(last.at("ratio").at("n").get<int>()) + " rounds, commit " +
+      last.at("commit").get<std::string>() +
+      ".\nRatios are median (min–max) of Embree's time over ours: above 1 we are faster. Rates move with "
+      "the machine, ratios far less.\n\n| scene | task | gnomon | against default | against ROBUST |\n"
+      "|---|---|---|---|---|\n";
   for (const auto& [key, line] : lines) {
-    const auto ratio = [&](const char* mode) { return line.ratio.contains(mode) ? line.ratio.at(mode) : "–"; };
-    out += "| " + std::get<0>(key) + " | " + std::get<2>(key) + " | " + line.ours + " | " + ratio("default") + " | " +
-           ratio("ROBUST") + " |\n";
+    const auto ratio = [&](const char* mode) {
+      return line.ratio.contains(mode) ? line.ratio.at(mode) : "–";
+    };
+    out += "| " + std::get<0>(key) + " | " + std::get<2>(key) + " | " + line.ours + " | " + ratio("default") +
+           " | " + ratio("ROBUST") + " |\n";
   }
   return out;
 }
@@ -77,7 +82,8 @@ std::string with_section(const std::string& text, const std::string& name, const
   const std::string end = "<!-- " + name + " end -->";
   const auto from = text.find(begin);
   const auto to = text.find(end);
-  if (from == std::string::npos || to == std::string::npos) throw std::runtime_error("no markers for " + name);
+  if (from == std::string::npos || to == std::string::npos)
+    throw std::runtime_error("no markers for " + name);
   return text.substr(0, from + begin.size()) + content + text.substr(to);
 }
 
@@ -91,9 +97,11 @@ int main(int argc, char** argv) {
   try {
     const std::string before = read(argv[3]);
     const std::string example = "```cpp\n" + read(argv[2]) + "```\n";
-    const std::string after = with_section(with_section(before, "speed", table(read(argv[1]))), "example", example);
+    const std::string after =
+        with_section(with_section(before, "speed", table(read(argv[1]))), "example", example);
     if (argc > 4 && std::string(argv[4]) == "--check") {
-      if (after != before) std::fprintf(stderr, "README.md is behind its rows or example: run readme_table without --check\n");
+      if (after != before)
+        std::fprintf(stderr, "README.md is behind its rows or example: run readme_table without --check\n");
       return after == before ? 0 : 1;
     }
     std::ofstream(argv[3], std::ios::binary) << after;

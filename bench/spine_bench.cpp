@@ -1,11 +1,13 @@
 // The question: how fast are build and trace beside Embree 3.13 (MEDIUM) on the same scene and rays?
-// One process, rounds that alternate the two and swap their order, process CPU time on one thread; one JSON row a
-// measurement on stdout. Ratios are claims; absolute rates are direction only. Charts and README read the rows.
+// One process, rounds that alternate the two and swap their order, process CPU time on one thread; one JSON
+// row a measurement on stdout. Ratios are claims; absolute rates are direction only. Charts and README read
+// the rows.
 //
 //   spine_bench [SCENE TRIANGLES]...   default: city 1000000 atrium 1000000
 //
-// What is inside the measured time: ours, filling nothing (rays and hits stay in device buffers) and the launch; Embree's,
-// filling an RTCRayHit per ray from the same array and writing a 16-byte hit back, as any caller with a batch must.
+// What is inside the measured time: ours, filling nothing (rays and hits stay in device buffers) and the
+// launch; Embree's, filling an RTCRayHit per ray from the same array and writing a 16-byte hit back, as any
+// caller with a batch must.
 #include <embree3/rtcore.h>
 #include <time.h>
 
@@ -91,7 +93,8 @@ void add_rates(json& row, const Paired& times, double items, const char* unit) {
 
 class EmbreeScene {
  public:
-  EmbreeScene(const std::vector<gnomon::Triangle>& triangles, bool robust) : triangles_(triangles), robust_(robust) {
+  EmbreeScene(const std::vector<gnomon::Triangle>& triangles, bool robust)
+      : triangles_(triangles), robust_(robust) {
     device_ = rtcNewDevice("threads=1,set_affinity=0");
   }
   EmbreeScene(const EmbreeScene&) = delete;
@@ -101,7 +104,8 @@ class EmbreeScene {
     rtcReleaseDevice(device_);
   }
 
-  // Geometry from unshared corners, as we take them; the copy into Embree's buffers is inside, as our upload is.
+  // Geometry from unshared corners, as we take them; the copy into Embree's buffers is inside, as our upload
+  // is.
   void build() {
     if (scene_ != nullptr) rtcReleaseScene(scene_);
     scene_ = rtcNewScene(device_);
@@ -204,7 +208,8 @@ class SceneBench {
     const auto ours = [&] { tree_ = gnomon::build_device(context_, scene_.triangles, {}, &report); };
     json row = common_;
     row["task"] = "build";
-    add_rates(row, measure(ours, [&] { peer.build(); }), static_cast<double>(scene_.triangles.size()), "mtris_per_s");
+    add_rates(row, measure(ours, [&] { peer.build(); }), static_cast<double>(scene_.triangles.size()),
+              "mtris_per_s");
     for (const auto& [stage, ms] : report.stages) row["stages_ms"][stage] = ms;
     const gnomon::Bvh bvh = gnomon::download_bvh(context_, tree_);
     row["tree_hash"] = gnomon::tree_hash(bvh);
@@ -233,7 +238,8 @@ class SceneBench {
       row["ray_count"] = rays.size();
       row["peer_mode"] = peer == &robust ? "ROBUST" : "default";
       add_rates(row, measure(ours, theirs), static_cast<double>(rays.size()), "mrays_per_s");
-      row["differing_answers"] = any ? differing_any(answer_buffer, occluded) : differing_closest(answer_buffer, hits);
+      row["differing_answers"] =
+          any ? differing_any(answer_buffer, occluded) : differing_closest(answer_buffer, hits);
       std::printf("%s\n", row.dump().c_str());
       std::fflush(stdout);
     }
@@ -251,7 +257,8 @@ class SceneBench {
     }
     return count;
   }
-  std::uint64_t differing_any(const gnomon::cl::Buffer& answers, const std::vector<std::uint32_t>& peer) const {
+  std::uint64_t differing_any(const gnomon::cl::Buffer& answers,
+                              const std::vector<std::uint32_t>& peer) const {
     const auto ours = context_.download_values<std::uint32_t>(answers, peer.size());
     std::uint64_t count = 0;
     for (std::size_t i = 0; i < peer.size(); ++i) count += ours[i] != peer[i] ? 1 : 0;
@@ -274,7 +281,8 @@ int main(int argc, char** argv) {
     const gnomon::cl::Context context(
         gnomon::cl::choose_device(gnomon::cl::list_devices(), choice == nullptr ? "" : choice));
     std::vector<std::pair<std::string, std::uint64_t>> scenes;
-    for (int i = 1; i + 1 < argc; i += 2) scenes.emplace_back(argv[i], std::strtoull(argv[i + 1], nullptr, 10));
+    for (int i = 1; i + 1 < argc; i += 2)
+      scenes.emplace_back(argv[i], std::strtoull(argv[i + 1], nullptr, 10));
     if (scenes.empty()) scenes = {{"city", 1000000}, {"atrium", 1000000}};
     for (const auto& [name, triangles] : scenes) SceneBench(context, name, triangles).run();
   } catch (const std::exception& error) {

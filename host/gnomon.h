@@ -1,5 +1,5 @@
-// The whole public interface: include this one file. Scenes, trees and hits are values in namespace gnomon; devices and
-// contexts live in gnomon::cl. Pictures are apart (gnomon/render/render.h).
+// The whole public interface: include this one file. Scenes, trees and hits are values in namespace gnomon;
+// devices and contexts live in gnomon::cl. Pictures are apart (gnomon/render/render.h).
 #pragma once
 
 #include "gnomon/base/error.h"

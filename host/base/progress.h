@@ -1,5 +1,5 @@
-// How long work tells its caller how far it is and learns that it should stop. Not for printing: the command line
-// decides whether and where a line appears. Feeds importers, builders, tracers and the oracle.
+// How long work tells its caller how far it is and learns that it should stop. Not for printing: the command
+// line decides whether and where a line appears. Feeds importers, builders, tracers and the oracle.
 #pragma once
 
 #include <functional>

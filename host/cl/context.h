@@ -1,6 +1,6 @@
 // A device made ready: context, queue, buffers, and where time goes. Not for kernels (program.h, launch.h).
-// Feeds host/device. Users may bring their own context and queue: they are retained, never destroyed, and the queue
-// is never finished; blocking calls wait for their own events only.
+// Feeds host/device. Users may bring their own context and queue: they are retained, never destroyed, and the
+// queue is never finished; blocking calls wait for their own events only.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +25,8 @@ struct Buffer {
 };
 
 struct ContextOptions {
-  bool profiling = true;         // event times per stage; adopted queues keep what they have
-  bool use_cache = true;         // keep compiled programs on disk
+  bool profiling = true;  // event times per stage; adopted queues keep what they have
+  bool use_cache = true;  // keep compiled programs on disk
   std::optional<std::filesystem::path> cache_folder;  // default: $XDG_CACHE_HOME/gnomon, else ~/.cache/gnomon
 };
 
@@ -37,7 +37,8 @@ class Context {
   // A context and an in-order queue of our own. Throws Error{kDevice}.
   explicit Context(const DeviceInfo& device, const ContextOptions& options = {});
   // The caller's. The queue must be in-order and belong to context and device.
-  Context(cl_context context, cl_device_id device, cl_command_queue queue, const ContextOptions& options = {});
+  Context(cl_context context, cl_device_id device, cl_command_queue queue,
+          const ContextOptions& options = {});
   Context(Context&&) noexcept;
   Context& operator=(Context&&) noexcept;
   ~Context();
@@ -48,11 +49,12 @@ class Context {
   [[nodiscard]] bool profiles() const { return profiles_; }
   [[nodiscard]] ProgramStore& programs() const { return *programs_; }
 
-  // A read-write buffer of at least `bytes` (one byte when 0). Throws Error{kOutOfMemory} naming buffer and size, before
-  // asking the driver where the device's limits already rule it out.
+  // A read-write buffer of at least `bytes` (one byte when 0). Throws Error{kOutOfMemory} naming buffer and
+  // size, before asking the driver where the device's limits already rule it out.
   [[nodiscard]] Buffer create_buffer(const std::string& name, std::size_t bytes) const;
 
-  // Blocking copies by mapping (no copy at all behind it on unified memory). Bytes beyond the buffer are refused.
+  // Blocking copies by mapping (no copy at all behind it on unified memory). Bytes beyond the buffer are
+  // refused.
   void upload(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t offset = 0) const;
   void download(const Buffer& buffer, std::span<std::byte> bytes, std::size_t offset = 0) const;
   // Fills the whole buffer with a repeated word; not blocking.
@@ -63,7 +65,8 @@ class Context {
     upload(buffer, std::as_bytes(values), first * sizeof(T));
   }
   template <typename T>
-  [[nodiscard]] std::vector<T> download_values(const Buffer& buffer, std::size_t count, std::size_t first = 0) const {
+  [[nodiscard]] std::vector<T> download_values(const Buffer& buffer, std::size_t count,
+                                               std::size_t first = 0) const {
     std::vector<T> values(count);
     download(buffer, std::as_writable_bytes(std::span<T>(values)), first * sizeof(T));
     return values;
@@ -79,7 +82,8 @@ class Context {
   std::unique_ptr<ProgramStore> programs_;
 };
 
-// Whether buffers of these sizes can exist on the device together; if not, a sentence naming the first culprit.
+// Whether buffers of these sizes can exist on the device together; if not, a sentence naming the first
+// culprit.
 [[nodiscard]] std::optional<std::string> why_not_fit(const DeviceInfo& device, const std::string& name,
                                                      std::uint64_t bytes);
 

@@ -35,12 +35,13 @@ struct DeviceInfo {
   bool fp64 = false;            // double precision: hit decisions are exact
   bool int64_atomics = false;
   bool little_endian = true;
-  // Turns all loops of one work-item may make together before the device ends them without a word (65535 on Mesa's
-  // llvmpipe); 0: as many as they like. Measured when a Context is made, 0 before.
+  // Turns all loops of one work-item may make together before the device ends them without a word (65535 on
+  // Mesa's llvmpipe); 0: as many as they like. Measured when a Context is made, 0 before.
   std::uint32_t loop_limit = 0;
 };
 
-// Every device of every platform, in platform order. Platforms without devices are left out. Empty when there is none.
+// Every device of every platform, in platform order. Platforms without devices are left out. Empty when there
+// is none.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
 // Probes a device we were given. Throws Error{kDevice}.
@@ -49,9 +50,10 @@ struct DeviceInfo {
 // The list as text, one line a device: "[0] 0:0 cpu NAME (PLATFORM)".
 [[nodiscard]] std::string format_devices(const std::vector<DeviceInfo>& devices);
 
-// Picks from the list. choice: "" (first GPU, else first CPU, else the first), an index "1", "platform:device" as in
-// "0:0", "cpu", "gpu", or a part of the name or platform's name, case ignored; several matches: the first.
-// Throws Error{kNoDevice} with the list in its message.
-[[nodiscard]] const DeviceInfo& choose_device(const std::vector<DeviceInfo>& devices, std::string_view choice);
+// Picks from the list. choice: "" (first GPU, else first CPU, else the first), an index "1",
+// "platform:device" as in "0:0", "cpu", "gpu", or a part of the name or platform's name, case ignored;
+// several matches: the first. Throws Error{kNoDevice} with the list in its message.
+[[nodiscard]] const DeviceInfo& choose_device(const std::vector<DeviceInfo>& devices,
+                                              std::string_view choice);
 
 }  // namespace gnomon::cl

@@ -1,5 +1,5 @@
-// Owning OpenCL objects: one word, move-only, released exactly once. Not for creating them. Feeds all of host/cl and
-// host/device.
+// Owning OpenCL objects: one word, move-only, released exactly once. Not for creating them. Feeds all of
+// host/cl and host/device.
 #pragma once
 
 #include <utility>

@@ -16,8 +16,8 @@ namespace gnomon::cl {
 class StageTimes {
  public:
   void add(const char* stage, Handle<cl_event> event) { events_.emplace_back(stage, std::move(event)); }
-  // Milliseconds per stage, in order of first appearance. Waits for the events; stages of queues without profiling
-  // are missing.
+  // Milliseconds per stage, in order of first appearance. Waits for the events; stages of queues without
+  // profiling are missing.
   [[nodiscard]] std::vector<std::pair<std::string, double>> milliseconds() const;
 
  private:
@@ -52,8 +52,8 @@ void set_arguments(cl_kernel kernel, const Arguments&... arguments) {
 }
 
 // Enqueues a one-dimensional launch; local 0 lets the driver choose. Never blocks.
-[[nodiscard]] Handle<cl_event> enqueue(cl_command_queue queue, cl_kernel kernel, std::size_t global, std::size_t local,
-                                       std::span<const cl_event> wait_for = {});
+[[nodiscard]] Handle<cl_event> enqueue(cl_command_queue queue, cl_kernel kernel, std::size_t global,
+                                       std::size_t local, std::span<const cl_event> wait_for = {});
 
 // Blocks until an event is complete. Throws Error{kDevice} when the command failed.
 void wait(const Handle<cl_event>& event);

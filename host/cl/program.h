@@ -1,5 +1,5 @@
-// Programs from embedded kernel sources: flattened, compiled with options that are also the cache key, kept in memory
-// and on disk. Not for launching (launch.h). Feeds host/device.
+// Programs from embedded kernel sources: flattened, compiled with options that are also the cache key, kept
+// in memory and on disk. Not for launching (launch.h). Feeds host/device.
 #pragma once
 
 #include <cstdint>
@@ -19,23 +19,24 @@ struct EmbeddedFile {
 };
 [[nodiscard]] std::span<const EmbeddedFile> embedded_kernels();
 
-// The file with its #include "..." lines replaced by the files' texts, each once, with #line directives so that build
-// logs name the right file. The environment variable GNOMON_KERNELS may name a folder to read from instead of the
-// embedded copies (development). Throws Error{kIo} for a file that is not there.
+// The file with its #include "..." lines replaced by the files' texts, each once, with #line directives so
+// that build logs name the right file. The environment variable GNOMON_KERNELS may name a folder to read from
+// instead of the embedded copies (development). Throws Error{kIo} for a file that is not there.
 [[nodiscard]] std::string flatten_kernel(std::string_view path);
 
 // What the store did, for tests and curious users.
 struct ProgramStoreStats {
-  std::uint32_t compiled = 0;    // from source
-  std::uint32_t from_disk = 0;   // from the binary cache
-  std::uint32_t rejected = 0;    // cache entries that were damaged or foreign
+  std::uint32_t compiled = 0;   // from source
+  std::uint32_t from_disk = 0;  // from the binary cache
+  std::uint32_t rejected = 0;   // cache entries that were damaged or foreign
 };
 
 class ProgramStore {
  public:
   ProgramStore(cl_context context, const DeviceInfo& device, const ContextOptions& options);
 
-  // The program of these files (flattened together) and options, compiled on first use. Options should be plain
+  // The program of these files (flattened together) and options, compiled on first use. Options should be
+  // plain
   // "-DNAME=VALUE" words; -cl-std=CL1.2 is added. Throws Error{kDevice} with the build log.
   [[nodiscard]] cl_program get(const std::vector<std::string>& files, const std::string& options);
   // One kernel of it.
@@ -44,7 +45,8 @@ class ProgramStore {
   [[nodiscard]] const ProgramStoreStats& stats() const { return stats_; }
 
  private:
-  [[nodiscard]] Handle<cl_program> load_binary(const std::filesystem::path& entry, const std::string& options);
+  [[nodiscard]] Handle<cl_program> load_binary(const std::filesystem::path& entry,
+                                               const std::string& options);
   [[nodiscard]] Handle<cl_program> compile(const std::string& source, const std::string& options);
   void save_binary(const std::filesystem::path& entry, cl_program program) const;
   [[nodiscard]] std::string build_log(cl_program program) const;

@@ -16,8 +16,8 @@ namespace gnomon {
 
 using Triangle = GnTriangle;
 
-// A tree in device memory, ready to trace. Buffers hold GnNode, uint32 and GnLeafTriangle; all have at least one entry:
-// an empty tree is one node with an inverted box that no ray meets.
+// A tree in device memory, ready to trace. Buffers hold GnNode, uint32 and GnLeafTriangle; all have at least
+// one entry: an empty tree is one node with an inverted box that no ray meets.
 struct DeviceBvh {
   cl::Buffer nodes;
   cl::Buffer order;           // leaf order -> index in the caller's triangles
@@ -30,8 +30,9 @@ struct DeviceBvh {
 
 // Where a build's time and memory went.
 struct BuildReport {
-  double total_ms = 0.0;                                 // wall clock, upload included
-  std::vector<std::pair<std::string, double>> stages;    // device milliseconds by stage (events); empty without profiling
+  double total_ms = 0.0;  // wall clock, upload included
+  std::vector<std::pair<std::string, double>>
+      stages;  // device milliseconds by stage (events); empty without profiling
   std::uint64_t scratch_bytes = 0;
 };
 
@@ -42,26 +43,28 @@ struct BufferNeed {
   bool scratch = false;  // gone when the build is over
 };
 
-// Every buffer a build of `triangle_count` triangles needs, before anything is allocated. Throws as options.check().
+// Every buffer a build of `triangle_count` triangles needs, before anything is allocated. Throws as
+// options.check().
 [[nodiscard]] std::vector<BufferNeed> build_memory(const cl::DeviceInfo& device, std::uint64_t triangle_count,
                                                    const BuildOptions& options);
 
-// Builds from host memory. The tree's bytes depend on triangles and options' heuristic values only: not on the device, its
-// work-group size or how the work was cut.
-// Throws Error: kInvalidArgument (options), kBadScene (a coordinate not finite or beyond 2^48; names the triangle),
-// kOutOfMemory (names buffer and size), kDevice, kCancelled.
+// Builds from host memory. The tree's bytes depend on triangles and options' heuristic values only: not on
+// the device, its work-group size or how the work was cut. Throws Error: kInvalidArgument (options),
+// kBadScene (a coordinate not finite or beyond 2^48; names the triangle), kOutOfMemory (names buffer and
+// size), kDevice, kCancelled.
 [[nodiscard]] DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> triangles,
                                      const BuildOptions& options = {}, BuildReport* report = nullptr,
                                      const Progress& progress = {});
 
-// Builds from the caller's buffer of packed 36-byte triangles, which is only read. Commands go to the context's
-// queue; the host waits for its own events, never for the whole queue.
-[[nodiscard]] DeviceBvh build_device(const cl::Context& context, cl_mem triangles, std::uint32_t triangle_count,
-                                     const BuildOptions& options = {}, BuildReport* report = nullptr,
-                                     const Progress& progress = {});
+// Builds from the caller's buffer of packed 36-byte triangles, which is only read. Commands go to the
+// context's queue; the host waits for its own events, never for the whole queue.
+[[nodiscard]] DeviceBvh build_device(const cl::Context& context, cl_mem triangles,
+                                     std::uint32_t triangle_count, const BuildOptions& options = {},
+                                     BuildReport* report = nullptr, const Progress& progress = {});
 
 // Copies a tree to the host, or one from the host to a device.
 [[nodiscard]] Bvh download_bvh(const cl::Context& context, const DeviceBvh& tree);
-[[nodiscard]] DeviceBvh upload_bvh(const cl::Context& context, const Bvh& bvh, std::span<const Triangle> triangles);
+[[nodiscard]] DeviceBvh upload_bvh(const cl::Context& context, const Bvh& bvh,
+                                   std::span<const Triangle> triangles);
 
 }  // namespace gnomon

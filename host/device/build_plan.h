@@ -11,15 +11,15 @@
 namespace gnomon {
 
 struct BuildPlan {
-  std::uint32_t count = 0;            // triangles
+  std::uint32_t count = 0;  // triangles
   std::uint32_t bins = 0;
   std::uint32_t work_group_size = 0;  // 1: serial flavour
   std::uint32_t item_group_size = 0;  // of kernels with one work-item per element
   std::uint32_t subtree_size = 0;     // nodes up to this many triangles go to one work-group
   std::uint32_t chunk_size = 0;
-  std::uint32_t compact_chunk = 0;    // leaf positions one work-item ranks
-  std::uint32_t max_tasks = 0;        // large nodes in one level
-  std::uint32_t max_chunks = 0;       // chunks in one level
+  std::uint32_t compact_chunk = 0;  // leaf positions one work-item ranks
+  std::uint32_t max_tasks = 0;      // large nodes in one level
+  std::uint32_t max_chunks = 0;     // chunks in one level
   [[nodiscard]] std::string program_options() const;
   // Scratch first, then what stays.
   [[nodiscard]] std::vector<BufferNeed> buffers() const;
@@ -27,6 +27,7 @@ struct BuildPlan {
 };
 
 // Fills in what the options leave to the device. Throws as options.check().
-[[nodiscard]] BuildPlan plan_build(const cl::DeviceInfo& device, std::uint64_t count, const BuildOptions& options);
+[[nodiscard]] BuildPlan plan_build(const cl::DeviceInfo& device, std::uint64_t count,
+                                   const BuildOptions& options);
 
 }  // namespace gnomon

@@ -1,5 +1,5 @@
-// The host's part of building large nodes: turning one level's results into the next level's tasks and chunks.
-// Plain arithmetic on downloaded values, no OpenCL. Feeds build_device.cpp; tested through it.
+// The host's part of building large nodes: turning one level's results into the next level's tasks and
+// chunks. Plain arithmetic on downloaded values, no OpenCL. Feeds build_device.cpp; tested through it.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// Tracing batches of rays through a tree on a device. Not for making rays or judging hits. Feeds the command line, the
-// renderer, benches. Both ways to call it: with host memory (blocking, any batch size), or with the caller's
-// buffers (only enqueues, returns an event).
+// Tracing batches of rays through a tree on a device. Not for making rays or judging hits. Feeds the command
+// line, the renderer, benches. Both ways to call it: with host memory (blocking, any batch size), or with the
+// caller's buffers (only enqueues, returns an event).
 #pragma once
 
 #include <cstdint>
@@ -19,18 +19,19 @@ using Hit = GnHit;
 struct TraceOptions {
   bool counters = false;               // also count boxes and triangles per ray; slower
   std::uint32_t work_group_size = 64;  // power of two up to the device's limit
-  // A ray's nodes and triangles per launch; rays that need more go on in another launch. 0: all in one, unless the
-  // device ends long loops (DeviceInfo::loop_limit). For devices that stop kernels which run for long.
+  // A ray's nodes and triangles per launch; rays that need more go on in another launch. 0: all in one,
+  // unless the device ends long loops (DeviceInfo::loop_limit). For devices that stop kernels which run for
+  // long.
   std::uint32_t step_limit = 0;
 };
 
 // Answers of a batch. One of hits and occluded is filled, by the call made.
 struct TraceResult {
-  std::vector<Hit> hits;                  // closest(): one per ray
-  std::vector<std::uint32_t> occluded;    // any(): 1 or 0 per ray
-  std::vector<GnRayCounters> counters;    // when asked for
-  std::uint64_t invalid_rays = 0;         // NaN, infinite origin or zero direction: they miss
-  double kernel_ms = 0.0;                 // device time; 0 without profiling
+  std::vector<Hit> hits;                // closest(): one per ray
+  std::vector<std::uint32_t> occluded;  // any(): 1 or 0 per ray
+  std::vector<GnRayCounters> counters;  // when asked for
+  std::uint64_t invalid_rays = 0;       // NaN, infinite origin or zero direction: they miss
+  double kernel_ms = 0.0;               // device time; 0 without profiling
 };
 
 // Holds the kernels for one tree. The context and the tree must outlive it.
@@ -43,9 +44,10 @@ class Tracer {
   [[nodiscard]] TraceResult closest(std::span<const Ray> rays, const Progress& progress = {}) const;
   [[nodiscard]] TraceResult any(std::span<const Ray> rays, const Progress& progress = {}) const;
 
-  // Enqueue on the context's queue and return: rays holds `count` GnRay; hits receives `count` GnHit, occluded `count`
-  // uint32. Waits for the given events on the device. Options' counters are not available this way. With a step
-  // limit this enqueues as many passes as the tree could need at worst, and needs memory for `count` stacks.
+  // Enqueue on the context's queue and return: rays holds `count` GnRay; hits receives `count` GnHit,
+  // occluded `count` uint32. Waits for the given events on the device. Options' counters are not available
+  // this way. With a step limit this enqueues as many passes as the tree could need at worst, and needs
+  // memory for `count` stacks.
   [[nodiscard]] cl::Handle<cl_event> enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
                                                      std::span<const cl_event> wait_for = {}) const;
   [[nodiscard]] cl::Handle<cl_event> enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
@@ -58,9 +60,11 @@ class Tracer {
   struct Passes;
   [[nodiscard]] cl::Handle<cl_event> enqueue(const Launch& launch, std::span<const cl_event> wait_for) const;
   [[nodiscard]] Passes make_passes(std::size_t rays) const;
-  [[nodiscard]] cl::Handle<cl_event> enqueue_pass(const Launch& launch, const Passes& passes, std::uint32_t pass,
+  [[nodiscard]] cl::Handle<cl_event> enqueue_pass(const Launch& launch, const Passes& passes,
+                                                  std::uint32_t pass,
                                                   std::span<const cl_event> wait_for) const;
-  [[nodiscard]] cl::Handle<cl_event> enqueue_only(const Launch& launch, std::span<const cl_event> wait_for) const;
+  [[nodiscard]] cl::Handle<cl_event> enqueue_only(const Launch& launch,
+                                                  std::span<const cl_event> wait_for) const;
   [[nodiscard]] std::uint32_t most_passes() const;
   [[nodiscard]] double run(const Launch& launch, const Passes& passes) const;
   template <typename Answer>

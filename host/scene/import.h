@@ -1,4 +1,5 @@
-// Reading a scene file, whatever its format. Not for making scenes (generators) or writing them (gltf_export).
+// Reading a scene file, whatever its format. Not for making scenes (generators) or writing them
+// (gltf_export).
 #pragma once
 
 #include <filesystem>
@@ -19,7 +20,8 @@ struct ImportOptions {
 // The two readers behind it. `bytes` variants let tests feed memory; `base_folder` resolves relative buffers.
 [[nodiscard]] Scene import_gltf(const std::filesystem::path& file, const ImportOptions& options = {});
 [[nodiscard]] Scene import_gltf_bytes(const unsigned char* bytes, std::size_t size,
-                                      const std::filesystem::path& base_folder, const ImportOptions& options = {});
+                                      const std::filesystem::path& base_folder,
+                                      const ImportOptions& options = {});
 [[nodiscard]] Scene import_obj(const std::filesystem::path& file, const ImportOptions& options = {});
 
 }  // namespace gnomon

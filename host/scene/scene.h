@@ -1,5 +1,6 @@
 // A scene as building, tracing and the picture need it: triangles in world space, cameras, lights and three
-// material values. Not for textures, animation or instancing. Feeds primitives, ray sets, areas and the renderer.
+// material values. Not for textures, animation or instancing. Feeds primitives, ray sets, areas and the
+// renderer.
 #pragma once
 
 #include <array>
@@ -38,21 +39,22 @@ enum class LightKind { kPoint, kSpot, kDirectional, kArea };
 struct Light {
   std::string name;
   LightKind kind = LightKind::kPoint;
-  Vec3 position{0.0F, 0.0F, 0.0F};    // point, spot; area: centroid of its surface
-  Vec3 direction{0.0F, 0.0F, -1.0F};  // spot, directional: unit, the way light travels; area: mean unit normal
-  Vec3 color{1.0F, 1.0F, 1.0F};       // intensity (point, spot: W/sr), irradiance (directional), radiance (area)
-  float range = 0.0F;                 // point, spot: 0 means without limit
-  float inner_cone = 0.0F;            // spot: half angles, radians
+  Vec3 position{0.0F, 0.0F, 0.0F};  // point, spot; area: centroid of its surface
+  Vec3 direction{0.0F, 0.0F,
+                 -1.0F};         // spot, directional: unit, the way light travels; area: mean unit normal
+  Vec3 color{1.0F, 1.0F, 1.0F};  // intensity (point, spot: W/sr), irradiance (directional), radiance (area)
+  float range = 0.0F;            // point, spot: 0 means without limit
+  float inner_cone = 0.0F;       // spot: half angles, radians
   float outer_cone = 0.785398F;
   std::vector<std::uint32_t> triangles;  // area: indices of its emissive triangles
 };
 
 // What an importer left out or assumed. Every count is shown to the user.
 struct ImportReport {
-  std::uint64_t non_finite_dropped = 0;   // triangles with NaN, infinite or out-of-range coordinates
-  std::uint64_t zero_area_dropped = 0;    // triangles whose three corners are collinear or equal
-  std::uint64_t primitives_skipped = 0;   // points and lines: nothing to trace
-  std::vector<std::string> notes;         // anything else a user should know, one sentence each
+  std::uint64_t non_finite_dropped = 0;  // triangles with NaN, infinite or out-of-range coordinates
+  std::uint64_t zero_area_dropped = 0;   // triangles whose three corners are collinear or equal
+  std::uint64_t primitives_skipped = 0;  // points and lines: nothing to trace
+  std::vector<std::string> notes;        // anything else a user should know, one sentence each
   [[nodiscard]] std::uint64_t dropped() const { return non_finite_dropped + zero_area_dropped; }
 };
 

@@ -15,7 +15,8 @@ void require(bool ok, const char* option, const std::string& value, const char* 
 }
 
 // 0 means "the device decides" for the options that only say how to work.
-void require_or_zero(std::uint32_t value, std::uint32_t low, std::uint32_t high, const char* option, const char* range) {
+void require_or_zero(std::uint32_t value, std::uint32_t low, std::uint32_t high, const char* option,
+                     const char* range) {
   require(value == 0 || (value >= low && value <= high), option, std::to_string(value), range);
 }
 
@@ -30,11 +31,13 @@ const char* to_string(Heuristic heuristic) {
 }
 
 void BuildOptions::check() const {
-  require(heuristic == Heuristic::kSah, "heuristic", std::to_string(static_cast<unsigned>(heuristic)), "{sah}");
+  require(heuristic == Heuristic::kSah, "heuristic", std::to_string(static_cast<unsigned>(heuristic)),
+          "{sah}");
   require(bins >= 2 && bins <= 64, "bins", std::to_string(bins), "2..64");
-  require(max_leaf_size >= 1 && max_leaf_size <= 255, "max_leaf_size", std::to_string(max_leaf_size), "1..255");
-  require(cost_traversal > 0.0F && cost_traversal <= 1000.0F, "cost_traversal", std::to_string(cost_traversal),
-          "(0, 1000]");
+  require(max_leaf_size >= 1 && max_leaf_size <= 255, "max_leaf_size", std::to_string(max_leaf_size),
+          "1..255");
+  require(cost_traversal > 0.0F && cost_traversal <= 1000.0F, "cost_traversal",
+          std::to_string(cost_traversal), "(0, 1000]");
   require(cost_triangle > 0.0F && cost_triangle <= 1000.0F, "cost_triangle", std::to_string(cost_triangle),
           "(0, 1000]");
   require(median_depth >= 1 && median_depth <= 64, "median_depth", std::to_string(median_depth), "1..64");

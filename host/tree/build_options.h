@@ -8,7 +8,8 @@
 
 namespace gnomon {
 
-// Which estimate of a box's hit probability decides the splits (Goldsmith & Salmon 1987; MacDonald & Booth 1990).
+// Which estimate of a box's hit probability decides the splits (Goldsmith & Salmon 1987; MacDonald & Booth
+// 1990).
 enum class Heuristic : std::uint32_t {
   kSah = 0,  // surface area: rays uniform in origin and direction
 };
@@ -16,11 +17,12 @@ enum class Heuristic : std::uint32_t {
 
 struct BuildOptions {
   Heuristic heuristic = Heuristic::kSah;
-  std::uint32_t bins = 16;           // per axis, 2..64
-  std::uint32_t max_leaf_size = 8;   // triangles, 1..255
-  float cost_traversal = 1.0F;       // of visiting an inner node, in the unit of cost_triangle; (0, 1000]
-  float cost_triangle = 1.0F;        // of testing one triangle; (0, 1000]
-  std::uint32_t median_depth = 64;   // from this depth on nodes are halved by count: bounds depth at + log2(n); 1..64
+  std::uint32_t bins = 16;          // per axis, 2..64
+  std::uint32_t max_leaf_size = 8;  // triangles, 1..255
+  float cost_traversal = 1.0F;      // of visiting an inner node, in the unit of cost_triangle; (0, 1000]
+  float cost_triangle = 1.0F;       // of testing one triangle; (0, 1000]
+  std::uint32_t median_depth =
+      64;  // from this depth on nodes are halved by count: bounds depth at + log2(n); 1..64
 
   // How the device works, never what it builds: 0 asks the device.
   std::uint32_t work_group_size = 0;  // power of two up to 256; 1: the serial flavour

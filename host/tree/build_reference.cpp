@@ -27,12 +27,15 @@ GnPrimitive primitive_of(const Triangle& triangle, std::uint32_t index) {
   for (int k = 0; k < 3; ++k) {
     for (const float x : {triangle.v0[k], triangle.v1[k], triangle.v2[k]}) {
       if (!(std::fabs(x) <= kCoordinateLimit)) {
-        throw Error(ErrorCode::kBadScene, "triangle " + std::to_string(index) +
-                                              " has a coordinate that is not finite or beyond 2^48; drop or repair it");
+        throw Error(ErrorCode::kBadScene,
+                    "triangle " + std::to_string(index) +
+                        " has a coordinate that is not finite or beyond 2^48; drop or repair it");
       }
     }
-    primitive.lo[k] = gn_without_negative_zero(gn_min(gn_min(triangle.v0[k], triangle.v1[k]), triangle.v2[k]));
-    primitive.hi[k] = gn_without_negative_zero(gn_max(gn_max(triangle.v0[k], triangle.v1[k]), triangle.v2[k]));
+    primitive.lo[k] =
+        gn_without_negative_zero(gn_min(gn_min(triangle.v0[k], triangle.v1[k]), triangle.v2[k]));
+    primitive.hi[k] =
+        gn_without_negative_zero(gn_max(gn_max(triangle.v0[k], triangle.v1[k]), triangle.v2[k]));
   }
   return primitive;
 }
@@ -52,7 +55,8 @@ void measure_range(const std::vector<GnPrimitive>& primitives, GnTask& task) {
   }
 }
 
-std::uint32_t bin_on_axis(const GnPrimitive& primitive, const GnTask& task, std::uint32_t axis, std::uint32_t bins) {
+std::uint32_t bin_on_axis(const GnPrimitive& primitive, const GnTask& task, std::uint32_t axis,
+                          std::uint32_t bins) {
   const float scale = gn_bin_scale(task.centroid_lo[axis], task.centroid_hi[axis], bins);
   return gn_bin_of(primitive.lo[axis] + primitive.hi[axis], task.centroid_lo[axis], scale, bins);
 }
@@ -81,7 +85,8 @@ GnSplit choose_split(const Builder& builder, const GnTask& task) {
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     if (gn_bin_scale(task.centroid_lo[axis], task.centroid_hi[axis], builder.options.bins) <= 0.0F) continue;
     const GnSplit split = best_split_on_axis(builder, task, axis);
-    if (split.axis != GN_NONE && (best.axis == GN_NONE || gn_split_is_better(&split, &best, count))) best = split;
+    if (split.axis != GN_NONE && (best.axis == GN_NONE || gn_split_is_better(&split, &best, count)))
+      best = split;
   }
   return best;
 }
@@ -105,7 +110,8 @@ std::uint32_t partition(Builder& builder, const GnTask& task, const GnSplit& spl
   return static_cast<std::uint32_t>(middle - builder.primitives.begin());
 }
 
-void push_child(Builder& builder, std::uint32_t begin, std::uint32_t end, std::uint32_t slot, std::uint32_t depth) {
+void push_child(Builder& builder, std::uint32_t begin, std::uint32_t end, std::uint32_t slot,
+                std::uint32_t depth) {
   GnTask child{};
   child.begin = begin;
   child.end = end;

@@ -54,7 +54,8 @@ std::string tree_hash(const Bvh& bvh) {
   XXH3_64bits_update(state.get(), bvh.nodes.data(), bvh.nodes.size() * sizeof(Node));
   XXH3_64bits_update(state.get(), bvh.primitives.data(), bvh.primitives.size() * sizeof(std::uint32_t));
   char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(XXH3_64bits_digest(state.get())));
+  std::snprintf(text, sizeof text, "%016llx",
+                static_cast<unsigned long long>(XXH3_64bits_digest(state.get())));
   return text;
 }
 

@@ -1,4 +1,5 @@
-// The binary tree as a value: nodes and leaf order, nothing of the device. Feeds checks, file, wide layouts, tracers.
+// The binary tree as a value: nodes and leaf order, nothing of the device. Feeds checks, file, wide layouts,
+// tracers.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +17,17 @@ using Node = GnNode;
 // Inner nodes are numbered by the place in leaf order where they split, so a subtree's nodes are neighbours
 // and the numbering depends on nothing but the tree's shape.
 struct Bvh {
-  std::vector<Node> nodes;               // root first; siblings adjacent
-  std::vector<std::uint32_t> primitives; // leaf order -> index in the caller's triangles
+  std::vector<Node> nodes;                // root first; siblings adjacent
+  std::vector<std::uint32_t> primitives;  // leaf order -> index in the caller's triangles
 };
 
-// What a tree looks like. Costs follow the surface area heuristic with the options' constants, relative to the root.
+// What a tree looks like. Costs follow the surface area heuristic with the options' constants, relative to
+// the root.
 struct BvhStats {
   double sah_cost = 0.0;
   std::uint64_t nodes = 0;
   std::uint64_t leaves = 0;
-  std::uint32_t max_depth = 0;      // root alone is 0
+  std::uint32_t max_depth = 0;  // root alone is 0
   std::uint32_t largest_leaf = 0;
   double mean_leaf = 0.0;
 };

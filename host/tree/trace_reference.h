@@ -1,5 +1,5 @@
-// Traversal in plain C++ with the kernels' own arithmetic (kernels/shared/hit_math.h): what the device tracer is tested
-// against, visit by visit. Not the judge of correctness (oracle.h is). Feeds tests.
+// Traversal in plain C++ with the kernels' own arithmetic (kernels/shared/hit_math.h): what the device tracer
+// is tested against, visit by visit. Not the judge of correctness (oracle.h is). Feeds tests.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,8 @@ struct ReferenceTrace {
   std::uint64_t invalid_rays = 0;
 };
 
-// Closest hits; with any_hit, each ray stops at the first hit it finds (hits[i].primitive says whether there is one).
+// Closest hits; with any_hit, each ray stops at the first hit it finds (hits[i].primitive says whether there
+// is one).
 [[nodiscard]] ReferenceTrace trace_reference(const Bvh& bvh, std::span<const Triangle> triangles,
                                              std::span<const Ray> rays, bool any_hit);
 

@@ -9,7 +9,8 @@ using gnomon::cl::DeviceInfo;
 
 namespace {
 
-DeviceInfo device(std::uint32_t index, std::uint32_t platform, std::uint32_t number, const char* name, bool gpu) {
+DeviceInfo device(std::uint32_t index, std::uint32_t platform, std::uint32_t number, const char* name,
+                  bool gpu) {
   DeviceInfo d;
   d.index = index;
   d.platform_index = platform;

@@ -36,13 +36,15 @@ double agrees_with_oracle(const GnRay& ray, const GnTriangle& t) {
 
 }  // namespace
 
-TEST_CASE("random rays and triangles: the float code decides as the exact oracle and t is right within an ulp") {
+TEST_CASE(
+    "random rays and triangles: the float code decides as the exact oracle and t is right within an ulp") {
   Random random(11);
   double worst = 0.0;
   for (int i = 0; i < 200000; ++i) {
     CAPTURE(i);
     const GnRay ray = gnomon::test::random_ray(random, -1.0F, 1.0F);
-    worst = std::max(worst, agrees_with_oracle(ray, gnomon::test::soup(1, static_cast<std::uint32_t>(i), 1.0F, -5.0F)[0]));
+    worst = std::max(
+        worst, agrees_with_oracle(ray, gnomon::test::soup(1, static_cast<std::uint32_t>(i), 1.0F, -5.0F)[0]));
   }
   REQUIRE(worst <= 1.0);
 }
@@ -58,7 +60,8 @@ TEST_CASE("rays aimed at corners and edge midpoints are decided as the exact ora
     const float* b = gnomon::test::corner(t, random.below(3));
     const float target[3] = {0.5F * (a[0] + b[0]), 0.5F * (a[1] + b[1]), 0.5F * (a[2] + b[2])};
     const GnRay ray = gnomon::test::aimed(
-        {offset + random.between(0, 10), offset + random.between(0, 10), offset + random.between(0, 10)}, target);
+        {offset + random.between(0, 10), offset + random.between(0, 10), offset + random.between(0, 10)},
+        target);
     REQUIRE(agrees_with_oracle(ray, t) <= 1.0);
     met += hits(ray, t) ? 1 : 0;
   }
@@ -74,13 +77,15 @@ TEST_CASE("a ray through a shared edge or vertex of a fan hits at least one of i
     std::array<std::array<float, 3>, kSpokes> rim{};
     for (int s = 0; s < kSpokes; ++s) {
       const double angle = 6.283185307179586 * s / kSpokes;
-      rim[static_cast<std::size_t>(s)] = {offset + static_cast<float>(std::cos(angle)) + random.between(-0.1F, 0.1F),
-                                          offset + static_cast<float>(std::sin(angle)) + random.between(-0.1F, 0.1F),
-                                          offset + random.between(-0.3F, 0.3F)};
+      rim[static_cast<std::size_t>(s)] = {
+          offset + static_cast<float>(std::cos(angle)) + random.between(-0.1F, 0.1F),
+          offset + static_cast<float>(std::sin(angle)) + random.between(-0.1F, 0.1F),
+          offset + random.between(-0.3F, 0.3F)};
     }
-    const std::array<float, 3> hub = {offset + random.between(-0.1F, 0.1F), offset + random.between(-0.1F, 0.1F), offset};
-    const std::array<float, 3> origin = {offset + random.between(-0.3F, 0.3F), offset + random.between(-0.3F, 0.3F),
-                                         offset + 5.0F};
+    const std::array<float, 3> hub = {offset + random.between(-0.1F, 0.1F),
+                                      offset + random.between(-0.1F, 0.1F), offset};
+    const std::array<float, 3> origin = {offset + random.between(-0.3F, 0.3F),
+                                         offset + random.between(-0.3F, 0.3F), offset + 5.0F};
     const GnRay ray = gnomon::test::aimed(origin, hub.data());
     int met = 0;
     for (std::size_t s = 0; s < kSpokes; ++s) {

@@ -1,5 +1,6 @@
-// The arithmetic of devices without double (pairs of floats), compiled for the host: it must decide and measure as
-// double does. A program of its own, because GN_WITHOUT_FP64 changes what the shared headers define.
+// The arithmetic of devices without double (pairs of floats), compiled for the host: it must decide and
+// measure as double does. A program of its own, because GN_WITHOUT_FP64 changes what the shared headers
+// define.
 #define GN_WITHOUT_FP64
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -23,7 +24,8 @@ TEST_CASE("a pair's product and sum carry what one float drops") {
   }
 }
 
-TEST_CASE("without double, random rays are decided as the exact oracle decides and t is right within an ulp") {
+TEST_CASE(
+    "without double, random rays are decided as the exact oracle decides and t is right within an ulp") {
   Random random(22);
   int met = 0;
   for (int i = 0; i < 200000; ++i) {
@@ -47,8 +49,9 @@ TEST_CASE("without double, no ray aimed at a corner is lost that the oracle says
   for (int i = 0; i < 50000; ++i) {
     CAPTURE(i);
     const GnTriangle t = gnomon::test::soup(1, static_cast<std::uint32_t>(i), 0.01F, 1000.0F)[0];
-    const GnRay ray = gnomon::test::aimed({random.between(0, 10), random.between(0, 10), random.between(0, 10)},
-                                          gnomon::test::corner(t, random.below(3)));
+    const GnRay ray =
+        gnomon::test::aimed({random.between(0, 10), random.between(0, 10), random.between(0, 10)},
+                            gnomon::test::corner(t, random.below(3)));
     if (!gnomon::exact_intersect(ray, t).inside) continue;
     const GnRayFrame frame = gn_ray_frame(&ray);
     GnHit hit{};
@@ -58,7 +61,8 @@ TEST_CASE("without double, no ray aimed at a corner is lost that the oracle says
   REQUIRE(met > 1000);
 }
 
-TEST_CASE("without double, sizes and directions from tiny to huge change neither decision nor t's precision") {
+TEST_CASE(
+    "without double, sizes and directions from tiny to huge change neither decision nor t's precision") {
   Random random(24);
   int met = 0;
   for (const int size : {-44, -20, 0, 20, 44}) {

@@ -1,4 +1,5 @@
-// The OpenCL device tests run on: GNOMON_DEVICE or the default choice. Having none is a failure, never a skip.
+// The OpenCL device tests run on: GNOMON_DEVICE or the default choice. Having none is a failure, never a
+// skip.
 #pragma once
 
 #include <cstdlib>

@@ -39,7 +39,8 @@ inline GnTriangle triangle(std::array<float, 3> a, std::array<float, 3> b, std::
 }
 
 // Triangles of edge length about `size` spread through a cube of side 10 around `offset`.
-inline std::vector<GnTriangle> soup(std::uint32_t count, std::uint32_t seed, float size = 0.5F, float offset = 0.0F) {
+inline std::vector<GnTriangle> soup(std::uint32_t count, std::uint32_t seed, float size = 0.5F,
+                                    float offset = 0.0F) {
   Random random(seed);
   std::vector<GnTriangle> out(count);
   for (GnTriangle& t : out) {
@@ -52,7 +53,8 @@ inline std::vector<GnTriangle> soup(std::uint32_t count, std::uint32_t seed, flo
   return out;
 }
 
-// A square grid of n x n cells, two triangles each, in the plane y = height: flat, axis-aligned, all edges shared.
+// A square grid of n x n cells, two triangles each, in the plane y = height: flat, axis-aligned, all edges
+// shared.
 inline std::vector<GnTriangle> grid(std::uint32_t n, float height = 0.0F) {
   std::vector<GnTriangle> out;
   const auto at = [&](std::uint32_t i, std::uint32_t j) {
@@ -67,7 +69,9 @@ inline std::vector<GnTriangle> grid(std::uint32_t n, float height = 0.0F) {
   return out;
 }
 
-inline std::vector<GnTriangle> repeated(const GnTriangle& t, std::uint32_t count) { return {count, t}; }
+inline std::vector<GnTriangle> repeated(const GnTriangle& t, std::uint32_t count) {
+  return {count, t};
+}
 
 // Named inputs on which builders go wrong.
 inline std::vector<std::pair<std::string, std::vector<GnTriangle>>> awkward_inputs() {
@@ -128,7 +132,8 @@ inline GnRay random_ray(Random& random, float low = -2.0F, float high = 12.0F) {
   return ray(origin, direction);
 }
 
-inline std::vector<GnRay> random_rays(std::uint32_t count, std::uint32_t seed, float low = -2.0F, float high = 12.0F) {
+inline std::vector<GnRay> random_rays(std::uint32_t count, std::uint32_t seed, float low = -2.0F,
+                                      float high = 12.0F) {
   Random random(seed);
   std::vector<GnRay> out;
   for (std::uint32_t i = 0; i < count; ++i) out.push_back(random_ray(random, low, high));
@@ -136,7 +141,9 @@ inline std::vector<GnRay> random_rays(std::uint32_t count, std::uint32_t seed, f
 }
 
 // The float corners of a triangle, by number.
-inline const float* corner(const GnTriangle& t, std::size_t i) { return i == 0 ? t.v0 : i == 1 ? t.v1 : t.v2; }
+inline const float* corner(const GnTriangle& t, std::size_t i) {
+  return i == 0 ? t.v0 : i == 1 ? t.v1 : t.v2;
+}
 
 // A ray from `origin` whose direction is exactly target - origin where floats allow it.
 inline GnRay aimed(std::array<float, 3> origin, const float* target) {

@@ -50,7 +50,8 @@ double best_sweep_cost(const std::vector<GnTriangle>& triangles) {
       const GnTriangle& t = triangles[i];
       return std::min({t.v0[axis], t.v1[axis], t.v2[axis]}) + std::max({t.v0[axis], t.v1[axis], t.v2[axis]});
     };
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return centre(a) < centre(b); });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return centre(a) < centre(b); });
     for (std::size_t i = 1; i < order.size(); ++i) {
       if (centre(order[i - 1]) < centre(order[i])) best = std::min(best, box(0, i) + box(i, order.size()));
     }
@@ -84,7 +85,8 @@ TEST_CASE("nodes past median_depth are halved by count, which bounds the depth")
       CAPTURE(depth, name);
       const Bvh bvh = gnomon::build_reference(triangles, options);
       require_valid(bvh, triangles, options);
-      const double limit = depth + std::ceil(std::log2(std::max<double>(1.0, static_cast<double>(triangles.size())))) + 1;
+      const double limit =
+          depth + std::ceil(std::log2(std::max<double>(1.0, static_cast<double>(triangles.size())))) + 1;
       REQUIRE(gnomon::stats_of(bvh, options).max_depth <= limit);
     }
   }
@@ -100,8 +102,8 @@ TEST_CASE("the root's split is the exhaustive sweep's when bins separate all cen
       std::array<float, 3> c{};
       for (float& x : c) x = static_cast<float>(random.below(8));
       const float s = random.between(0.1F, 3.0F);
-      triangles.push_back(gnomon::test::triangle({c[0] - s, c[1] - s, c[2] - s}, {c[0] + s, c[1] + s, c[2] + s},
-                                                 {c[0] + s, c[1] - s, c[2]}));
+      triangles.push_back(gnomon::test::triangle({c[0] - s, c[1] - s, c[2] - s},
+                                                 {c[0] + s, c[1] + s, c[2] + s}, {c[0] + s, c[1] - s, c[2]}));
     }
     BuildOptions options;
     options.bins = 64;

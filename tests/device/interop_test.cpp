@@ -92,7 +92,10 @@ TEST_CASE("builds and traces on the caller's context, queue and buffers, and lea
   }
   for (cl_mem mem : {triangle_buffer, ray_buffer, hit_buffer}) REQUIRE(clReleaseMemObject(mem) == CL_SUCCESS);
   // Drivers let go of finished commands in threads of their own: what we hold is known once they have.
-  for (int i = 0; i < 200 && foreign.context_references() != contexts; ++i) {
+  const auto held = [&] {
+    return foreign.context_references() != contexts || foreign.queue_references() != queues;
+  };
+  for (int i = 0; i < 200 && held(); ++i) {
     clFinish(foreign.queue);
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -40,19 +41,24 @@ struct Line {
 };
 
 std::string table(const std::string& rows) {
-  using Key = std::tuple<std::string, int, std::string>;  // scene, order, what
+  using Key = std::tuple<std::string, std::uint64_t, int, std::string>;  // scene, triangles, order, what
   std::map<Key, Line> lines;
   json last;
   std::istringstream in(rows);
+  std::vector<json> all;
   for (std::string text; std::getline(in, text);) {
     if (text.empty()) continue;
     const json row = json::parse(text);
-    if (row.at("schema") != 1 || row.at("bench") != "spine") continue;
-    last = row;
+    if (row.at("schema") == 1 && row.at("bench") == "spine") all.push_back(row);
+  }
+  if (!all.empty()) last = all.back();
+  for (const json& row : all) {
+    // One table, one commit and device: the newest.
+    if (row.at("commit") != last.at("commit") || row.at("device") != last.at("device")) continue;
     const bool build = row.at("task") == "build";
     const std::string what =
         build ? "build" : row.at("task").get<std::string>() + ", " + row.at("rays").get<std::string>();
-    Line& line = lines[{row.at("scene"), build ? 0 : 1, what}];
+    Line& line = lines[{row.at("scene"), row.at("triangles"), build ? 0 : 1, what}];
     line.ours = spread(row.at(build ? "gnomon_mtris_per_s" : "gnomon_mrays_per_s")) +
                 (build ? " Mtris/s" : " Mrays/s");
     line.ratio[row.value("peer_mode", "default")] = spread(row.at("ratio"));
@@ -70,8 +76,8 @@ std::string table(const std::string& rows) {
     const auto ratio = [&](const char* mode) {
       return line.ratio.contains(mode) ? line.ratio.at(mode) : "–";
     };
-    out += "| " + std::get<0>(key) + " | " + std::get<2>(key) + " | " + line.ours + " | " + ratio("default") +
-           " | " + ratio("ROBUST") + " |\n";
+    out += "| " + std::get<0>(key) + ", " + std::to_string(std::get<1>(key)) + " triangles | " +
+           std::get<3>(key) + " | " + line.ours + " | " + ratio("default") + " | " + ratio("ROBUST") + " |\n";
   }
   return out;
 }

@@ -4,14 +4,50 @@
 #define GNOMON_BIN_H
 
 #include "group.h"
+#include "shared/axis_policy.h"
 
-// How doubled centroids of a node map to bins.
+// Which axis policy kernels are compiled for: GN_AXES_ALL leaves the others out.
+#ifndef GN_AXES
+#define GN_AXES GN_AXES_ALL
+#endif
+
+// What the published builder bins: barycentres over the node's box, its last plane left out. Ours: middles of boxes over
+// their own bounds.
+#ifndef GN_PUBLISHED_BINS
+#define GN_PUBLISHED_BINS 0
+#endif
+#define GN_PLANES (GN_BINS - 1u - GN_PUBLISHED_BINS)
+
+// How doubled centroids of a node (published: tripled barycentres) map to bins.
 typedef struct GnBinning {
   float4 base;
   float4 scale;
+#if GN_PUBLISHED_BINS
+  __global const float* triangles;
+#endif
 } GnBinning;
 
-static inline GnBinning binning_of(const GnTask* task) {
+#if GN_PUBLISHED_BINS
+static inline GnBinning binning_of(const GnTask* task, __global const float* triangles) {
+  const float4 lo = (float4)(task->lo[0], task->lo[1], task->lo[2], 0.0f);
+  const float4 hi = (float4)(task->hi[0], task->hi[1], task->hi[2], 0.0f);
+  GnBinning binning;
+  binning.triangles = triangles;
+  binning.base = 3.0f * lo;
+  binning.scale = (float4)(gn_bin_scale(3.0f * lo.x, 3.0f * hi.x, GN_BINS), gn_bin_scale(3.0f * lo.y, 3.0f * hi.y, GN_BINS),
+                           gn_bin_scale(3.0f * lo.z, 3.0f * hi.z, GN_BINS), 0.0f);
+  return binning;
+}
+
+static inline uint3 bins_of(float8 primitive, GnBinning binning) {
+  const size_t corner = 3u * (size_t)as_uint(primitive.s3);
+  const float3 sum = vload3(corner, binning.triangles) + vload3(corner + 1u, binning.triangles) +
+                     vload3(corner + 2u, binning.triangles);
+  const float3 place = (sum - binning.base.xyz) * binning.scale.xyz;
+  return min(convert_uint3(GN_VMAX(place, (float3)(0.0f))), (uint3)(GN_BINS - 1u));
+}
+#else
+static inline GnBinning binning_of(const GnTask* task, __global const float* triangles) {
   GnBinning binning;
   binning.base = (float4)(task->centroid_lo[0], task->centroid_lo[1], task->centroid_lo[2], 0.0f);
   binning.scale = (float4)(gn_bin_scale(task->centroid_lo[0], task->centroid_hi[0], GN_BINS),
@@ -25,6 +61,7 @@ static inline uint3 bins_of(float8 primitive, GnBinning binning) {
   const float3 place = ((primitive.lo.xyz + primitive.hi.xyz) - binning.base.xyz) * binning.scale.xyz;
   return min(convert_uint3(place), (uint3)(GN_BINS - 1u));
 }
+#endif
 
 static inline void clear_bins(__local GnBin* bins, __local uint* counts) {
   uint i;
@@ -83,20 +120,37 @@ static inline void bin_range(__global const float8* primitives, uint begin, uint
 #endif
 }
 
-// The best split of all three axes; every work-item receives it. An axis without extent offers none.
-static inline GnSplit choose_split(__local const GnBin* bins, __local const uint* counts, GnBinning binning,
-                                   uint count, __local GnSplit* best_of_axis) {
+// A task as axis policies see it. An axis without extent cannot be divided.
+static inline GnNodeView view_of(const GnTask* task, GnBinning binning) {
+  GnNodeView node;
+  int k;
+  for (k = 0; k < 3; ++k) {
+    node.lo[k] = task->lo[k];
+    node.hi[k] = task->hi[k];
+  }
+  node.probability = task->probability;
+  node.count = task->end - task->begin;
+  node.depth = task->depth;
+  node.usable = (binning.scale.x > 0.0f ? 1u : 0u) | (binning.scale.y > 0.0f ? 2u : 0u) |
+                (binning.scale.z > 0.0f ? 4u : 0u);
+  return node;
+}
+
+// The cheapest split of all three axes, each swept by a work-item of its own where there are several.
+static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int precise, const GnNodeView* node,
+                                     __local const GnBin* bins, __local const uint* counts,
+                                     __local GnSplit* best_of_axis) {
   GnSplit best;
   uint axis;
-  const float scale[3] = {binning.scale.x, binning.scale.y, binning.scale.z};
 #if GN_WGS == 1
   for (axis = 0u; axis < 3u; ++axis) {
 #else
   for (axis = GN_LOCAL_ID; axis < 3u; axis += GN_WGS) {
 #endif
-    GnSplit split = {INFINITY, GN_NONE, 0u, 0u};
-    if (scale[axis] > 0.0f) {
-      split = gn_sweep_axis(bins + axis * GN_BINS, counts + axis * GN_BINS, GN_BINS, axis, count);
+    GnSplit split = gn_no_split();
+    if ((node->usable >> axis & 1u) != 0u) {
+      split = gn_sweep_axis(&heuristic->measure, precise, bins + axis * GN_BINS, counts + axis * GN_BINS, GN_PLANES,
+                            GN_BINS, axis, node->count);
     }
     best_of_axis[axis] = split;
   }
@@ -104,9 +158,24 @@ static inline GnSplit choose_split(__local const GnBin* bins, __local const uint
   best = best_of_axis[0];
   for (axis = 1u; axis < 3u; ++axis) {
     const GnSplit split = best_of_axis[axis];
-    if (split.axis != GN_NONE && (best.axis == GN_NONE || gn_split_is_better(&split, &best, count))) best = split;
+    if (split.axis != GN_NONE && (best.axis == GN_NONE || gn_split_is_better(&split, &best, node->count))) best = split;
   }
   return best;
+}
+
+// The split the heuristic chooses; every work-item receives it.
+static inline GnSplit choose_split(const GnHeuristic* heuristic, int precise, const GnNodeView* node,
+                                   __local const GnBin* bins, __local const uint* counts,
+                                   __local GnSplit* best_of_axis) {
+#if GN_AXES == GN_AXES_ALL
+  return cheapest_split(heuristic, precise, node, bins, counts, best_of_axis);
+#else
+  if (GN_LOCAL_ID == 0u) {
+    best_of_axis[0] = gn_policy_split(heuristic, precise, node, bins, counts, GN_PLANES, GN_BINS);
+  }
+  GN_GROUP_BARRIER();
+  return best_of_axis[0];
+#endif
 }
 
 // Union of the boxes of bins [from, to) of one axis.

@@ -4,15 +4,15 @@
 
 // One work-group per chunk. Writes the chunk's bins and counts (3 * GN_BINS each).
 __kernel void bin_chunks(__global const float8* primitives0, __global const float8* primitives1,
-                         __global const GnTask* tasks, __global const GnChunk* chunks, __global GnBin* chunk_bins,
-                         __global uint* chunk_counts) {
+                         __global const float* triangles, __global const GnTask* tasks,
+                         __global const GnChunk* chunks, __global GnBin* chunk_bins, __global uint* chunk_counts) {
   __local GnBin bins[3 * GN_BINS];
   __local uint counts[3 * GN_BINS];
   const uint group = (uint)get_group_id(0);
   const GnChunk chunk = chunks[group];
   const GnTask task = tasks[chunk.task];
   uint i;
-  bin_range(task.buffer == 0u ? primitives0 : primitives1, chunk.begin, chunk.end, binning_of(&task), bins, counts);
+  bin_range(task.buffer == 0u ? primitives0 : primitives1, chunk.begin, chunk.end, binning_of(&task, triangles), bins, counts);
   for (i = GN_LOCAL_ID; i < 3u * GN_BINS; i += GN_WGS) {
     chunk_bins[(size_t)group * (3u * GN_BINS) + i] = bins[i];
     chunk_counts[(size_t)group * (3u * GN_BINS) + i] = counts[i];
@@ -55,7 +55,8 @@ static inline uint lefts_in_chunk(const GnTask* task, const GnChunk* chunk, __gl
 // Large nodes never become leaves: they hold more triangles than any leaf may.
 __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __global const uint* first_chunk,
                           __global const GnBin* chunk_bins, __global const uint* chunk_counts,
-                          __global GnChildren* children, uint median_depth) {
+                          __global GnChildren* children, __global const GnHeuristic* heuristic_in,
+                          __global const float* triangles) {
   __local GnBin bins[3 * GN_BINS];
   __local uint counts[3 * GN_BINS];
   __local GnSplit best_of_axis[3];
@@ -63,15 +64,20 @@ __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __gl
   const uint from = first_chunk[group], to = first_chunk[group + 1u];
   GnTask task = tasks[group];
   const uint count = task.end - task.begin;
+  const GnHeuristic heuristic = *heuristic_in;
+  const GnNodeView node = view_of(&task, binning_of(&task, triangles));
   GnSplit split;
   merge_chunks(chunk_bins, chunk_counts, from, to, bins, counts);
-  split = choose_split(bins, counts, binning_of(&task), count, best_of_axis);
+  split = choose_split(&heuristic, gn_measure_is_precise(&heuristic.measure, task.lo, task.hi), &node, bins, counts,
+                       best_of_axis);
   if (GN_LOCAL_ID == 0u) {
-    const int halve = split.axis == GN_NONE || task.depth >= median_depth;
+    const int halve = split.axis == GN_NONE || task.depth >= heuristic.rules.median_depth;
     uint chunk, left_at, right_at;
     task.axis = halve ? GN_NONE : split.axis;
     task.plane = split.plane;
     task.left_count = halve ? count / 2u : split.left_count;
+    task.left_measure = split.left_measure;
+    task.right_measure = split.right_measure;
     if (!halve) {
       __local const GnBin* axis_bins = bins + split.axis * GN_BINS;
       __local const uint* axis_counts = counts + split.axis * GN_BINS;
@@ -95,14 +101,14 @@ __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __gl
 // One work-group per chunk: moves its primitives to the other buffer and writes four bounds per chunk: doubled
 // centroids left and right, boxes left and right (the boxes only where the task is halved).
 __kernel void partition_chunks(__global float8* primitives0, __global float8* primitives1,
-                               __global const GnTask* tasks, __global const GnChunk* chunks,
+                               __global const float* triangles, __global const GnTask* tasks, __global const GnChunk* chunks,
                                __global GnBounds* bounds) {
   __local uint scan[GN_WGS];
   __local int keys[6];
   const uint group = (uint)get_group_id(0);
   const GnChunk chunk = chunks[group];
   const GnTask task = tasks[chunk.task];
-  const GnSide side = side_of(&task, binning_of(&task));
+  const GnSide side = side_of(&task, binning_of(&task, triangles));
   __global const float8* from = task.buffer == 0u ? primitives0 : primitives1;
   __global float8* to = task.buffer == 0u ? primitives1 : primitives0;
   const GnTwoBounds sides =

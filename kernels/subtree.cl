@@ -31,16 +31,15 @@ static inline void write_node(__global GnNode* node, const GnTask* task, uint fi
   node->count = count;
 }
 
-// Chooses the task's split, or marks it a leaf by left_count == 0.
-static inline void decide(GnTask* task, GnSplit split, uint max_leaf_size, float cost_traversal,
-                          float cost_triangle) {
-  const uint count = task->end - task->begin;
-  const float measure = gn_box_measure(task->lo, task->hi);
-  const int leaf = count <= max_leaf_size &&
-                   (count == 1u || gn_leaf_is_better(&split, measure, count, cost_traversal, cost_triangle));
-  task->axis = split.axis;
-  task->plane = split.plane;
-  task->left_count = leaf ? 0u : split.axis == GN_NONE ? count / 2u : split.left_count;
+// Enters the split into the task, or marks it a leaf by left_count == 0.
+static inline void decide(GnTask* task, const GnHeuristic* heuristic, int precise, const GnNodeView* node,
+                          const GnSplit* split) {
+  const int leaf = gn_becomes_leaf(heuristic, precise, node, split);
+  task->axis = split->axis;
+  task->plane = split->plane;
+  task->left_count = leaf ? 0u : split->axis == GN_NONE ? node->count / 2u : split->left_count;
+  task->left_measure = split->left_measure;
+  task->right_measure = split->right_measure;
 }
 
 // One work-group per task of roots. Writes nodes into the sparse array, marks split positions in inner_rank with 1
@@ -48,8 +47,8 @@ static inline void decide(GnTask* task, GnSplit split, uint max_leaf_size, float
 // unfinished, which only a device that ends loops by itself does.
 __kernel void build_subtrees(__global float8* primitives0, __global float8* primitives1,
                              __global const GnTask* roots, __global GnNode* nodes, __global uint* inner_rank,
-                             __global uint* order, volatile __global uint* outcome, uint max_leaf_size,
-                             uint median_depth, float cost_traversal, float cost_triangle) {
+                             __global uint* order, volatile __global uint* outcome,
+                             __global const GnHeuristic* heuristic_in, __global const float* triangles) {
   __local GnBin bins[3 * GN_BINS];
   __local uint counts[3 * GN_BINS];
   __local GnSplit best_of_axis[3];
@@ -57,6 +56,7 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
   __local uint scan[GN_WGS];
   __local int keys[6];
   __local uint top;
+  const GnHeuristic heuristic = *heuristic_in;
   uint deepest = 0u;
   if (GN_LOCAL_ID == 0u) {
     stack[0] = roots[get_group_id(0)];
@@ -71,22 +71,25 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
     const uint count = task.end - task.begin;
     __global float8* from = task.buffer == 0u ? primitives0 : primitives1;
     __global float8* to = task.buffer == 0u ? primitives1 : primitives0;
-    const GnBinning binning = binning_of(&task);
-    GnSplit split = {INFINITY, GN_NONE, 0u, 0u};
+    const GnBinning binning = binning_of(&task, triangles);
+    const GnNodeView node = view_of(&task, binning);
+    const int precise = gn_measure_is_precise(&heuristic.measure, task.lo, task.hi);
+    GnSplit split = gn_no_split();
     GN_GROUP_BARRIER();
 
     // Bin and choose; single triangles and nodes past median_depth need no bins.
-    const uint binned_end = count > 1u && task.depth < median_depth ? task.end : task.begin;
+    const uint binned_end = count > 1u && task.depth < heuristic.rules.median_depth ? task.end : task.begin;
 #if GN_WGS == 1
     if (binned_end > task.begin) {
       bin_range(from, task.begin, binned_end, binning, bins, counts);
-      split = choose_split(bins, counts, binning, count, best_of_axis);
+      split = choose_split(&heuristic, precise, &node, bins, counts, best_of_axis);
     }
 #else
     bin_range(from, task.begin, binned_end, binning, bins, counts);
-    split = choose_split(bins, counts, binning, binned_end - task.begin, best_of_axis);
+    split = choose_split(&heuristic, precise, &node, bins, counts, best_of_axis);
+    if (binned_end == task.begin) split = gn_no_split();
 #endif
-    decide(&task, split, max_leaf_size, cost_traversal, cost_triangle);
+    decide(&task, &heuristic, precise, &node, &split);
     const uint is_leaf = task.left_count == 0u ? 1u : 0u;
     const uint middle = task.begin + task.left_count;
     const uint halved = !is_leaf && task.axis == GN_NONE ? 1u : 0u;
@@ -122,12 +125,14 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
         left_task->slot = 2u * middle;
         left_task->depth = task.depth + 1u;
         left_task->buffer = task.buffer ^ 1u;
+        left_task->probability = task.left_measure;
         set_task_bounds(right_task, right, sides.right);
         right_task->begin = middle;
         right_task->end = task.end;
         right_task->slot = 2u * middle + 1u;
         right_task->depth = task.depth + 1u;
         right_task->buffer = task.buffer ^ 1u;
+        right_task->probability = task.right_measure;
         inner_rank[middle] = 1u;
         top = height + 1u;
       }

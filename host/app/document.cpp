@@ -40,7 +40,7 @@ void add_tree_options(Json& document, const cl::DeviceInfo& device, std::uint64_
                       const BuildOptions& options) {
   const BuildPlan plan = plan_build(device, triangles, options);
   Json& out = document["options"];
-  out["heuristic"] = to_string(options.heuristic);
+  out["heuristic"] = heuristic_name(options);
   out["bins"] = options.bins;
   out["max_leaf"] = options.max_leaf_size;
   out["cost_traversal"] = options.cost_traversal;

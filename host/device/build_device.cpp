@@ -24,7 +24,7 @@ class DeviceBuilder {
       : context_(context), options_(options), plan_(plan), triangles_(triangles) {
     for (cl::Buffer* buffer :
          {&primitives_a_, &primitives_b_, &sparse_nodes_, &inner_rank_, &rank_sums_, &status_, &chunk_bounds_,
-          &chunk_bins_, &chunk_counts_, &chunks_, &tasks_, &first_chunk_, &children_, &order_}) {
+          &chunk_bins_, &chunk_counts_, &chunks_, &tasks_, &first_chunk_, &children_, &order_, &heuristic_}) {
       *buffer = allocate(buffer->name);
     }
   }
@@ -94,6 +94,8 @@ class DeviceBuilder {
                       " has a coordinate that is not finite or beyond 2^48; drop or repair it");
     }
     const GnTask root = root_task(bounds, plan_.count);
+    const GnHeuristic heuristic = heuristic_of(options_, root.lo, root.hi);
+    context_.upload_values<GnHeuristic>(heuristic_, std::span(&heuristic, 1));
     if (plan_.count > plan_.subtree_size) return {root};
     large.roots.push_back(root);
     return {};
@@ -104,12 +106,12 @@ class DeviceBuilder {
     context_.upload_values<GnTask>(tasks_, level.tasks);
     context_.upload_values<GnChunk>(chunks_, level.chunks);
     context_.upload_values<std::uint32_t>(first_chunk_, level.first_chunk);
-    launch_groups("bin", "bin_chunks", level.chunks.size(), primitives_a_, primitives_b_, tasks_, chunks_,
-                  chunk_bins_, chunk_counts_);
+    launch_groups("bin", "bin_chunks", level.chunks.size(), primitives_a_, primitives_b_, triangles_, tasks_,
+                  chunks_, chunk_bins_, chunk_counts_);
     launch_groups("split", "split_tasks", level.tasks.size(), tasks_, chunks_, first_chunk_, chunk_bins_,
-                  chunk_counts_, children_, options_.median_depth);
-    launch_groups("partition", "partition_chunks", level.chunks.size(), primitives_a_, primitives_b_, tasks_,
-                  chunks_, chunk_bounds_);
+                  chunk_counts_, children_, heuristic_, triangles_);
+    launch_groups("partition", "partition_chunks", level.chunks.size(), primitives_a_, primitives_b_,
+                  triangles_, tasks_, chunks_, chunk_bounds_);
     const auto children = context_.download_values<GnChildren>(children_, level.tasks.size());
     const auto bounds = context_.download_values<GnBounds>(chunk_bounds_, 4 * level.chunks.size());
     level.tasks = context_.download_values<GnTask>(tasks_, level.tasks.size());
@@ -123,8 +125,7 @@ class DeviceBuilder {
     const cl::Buffer outcome = context_.create_buffer("subtree_outcome", 2 * sizeof(std::uint32_t));
     context_.fill(outcome, 0);
     launch_groups("subtrees", "build_subtrees", root_count, primitives_a_, primitives_b_, roots,
-                  sparse_nodes_, inner_rank_, order_, outcome, options_.max_leaf_size, options_.median_depth,
-                  options_.cost_traversal, options_.cost_triangle);
+                  sparse_nodes_, inner_rank_, order_, outcome, heuristic_, triangles_);
     if (!large.nodes.empty()) {
       const auto count = static_cast<std::uint32_t>(large.nodes.size());
       const cl::Buffer nodes = context_.create_buffer("large_nodes", count * sizeof(Node));
@@ -174,7 +175,7 @@ class DeviceBuilder {
       chunk_counts_{{}, "chunk_counts"};
   cl::Buffer chunks_{{}, "chunks"}, tasks_{{}, "tasks"}, first_chunk_{{}, "first_chunk"},
       children_{{}, "children"};
-  cl::Buffer order_{{}, "order"};
+  cl::Buffer order_{{}, "order"}, heuristic_{{}, "heuristic"};
 };
 
 // The box no ray meets.

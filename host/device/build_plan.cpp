@@ -20,11 +20,21 @@ std::uint32_t serial_subtree_size(const cl::DeviceInfo& device, std::uint64_t co
   return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(share, 1024, 16384));
 }
 
+// What the stack in subtree.cl has room for.
+constexpr std::uint32_t kMostInOneSubtree = 1U << 22U;
+
 // How many triangles a subtree, a chunk may have where the device ends long loops. A node's bins are cleared,
 // read back and swept in about 6 turns a bin, 48 more shared by a cooperative group's work-items; a triangle
 // makes up to two nodes, and half of the limit stays in reserve.
 void heed_loop_limit(BuildPlan& plan, const cl::DeviceInfo& device, const BuildOptions& options) {
   const std::uint32_t limit = device.loop_limit;
+  if (!plan.linear_only) {
+    throw Error(ErrorCode::kInvalidArgument,
+                device.name + " ends loops after " + std::to_string(limit) + " turns, and " +
+                    heuristic_name(options) +
+                    " takes more for a single node; use a measure without window or "
+                    "point, or another device");
+  }
   const std::uint32_t width = plan.work_group_size;
   const std::uint32_t turns_per_triangle = 4 * plan.bins * (6 + (width == 1 ? 0 : 48 / width));
   const std::uint32_t subtree = limit / turns_per_triangle;
@@ -50,7 +60,9 @@ void heed_loop_limit(BuildPlan& plan, const cl::DeviceInfo& device, const BuildO
 }  // namespace
 
 std::string BuildPlan::program_options() const {
-  return "-DGN_WGS=" + std::to_string(work_group_size) + " -DGN_BINS=" + std::to_string(bins);
+  return "-DGN_WGS=" + std::to_string(work_group_size) + " -DGN_BINS=" + std::to_string(bins) +
+         " -DGN_AXES=" + std::to_string(axes) + "u -DGN_PUBLISHED_BINS=" + (published_bins ? "1" : "0") +
+         " -DGN_LINEAR_ONLY=" + (linear_only ? "1" : "0");
 }
 
 std::vector<BufferNeed> BuildPlan::buffers() const {
@@ -72,6 +84,7 @@ std::vector<BufferNeed> BuildPlan::buffers() const {
       {"tasks", std::uint64_t{max_tasks} * sizeof(GnTask), true},
       {"first_chunk", (max_tasks + 1ULL) * sizeof(std::uint32_t), true},
       {"children", std::uint64_t{max_tasks} * sizeof(GnChildren), true},
+      {"heuristic", sizeof(GnHeuristic), true},
       {"subtree_roots", max_roots * sizeof(GnTask), true},
       {"triangles", n * sizeof(Triangle), true},
       {"nodes", 2 * n * sizeof(GnNode), false},
@@ -96,6 +109,9 @@ BuildPlan plan_build(const cl::DeviceInfo& device, std::uint64_t count, const Bu
   BuildPlan plan;
   plan.count = static_cast<std::uint32_t>(count);
   plan.bins = options.bins;
+  plan.axes = static_cast<std::uint32_t>(options.axes);
+  plan.published_bins = options.published_leaves.on;
+  plan.linear_only = options.measure.kind == GN_MEASURE_LINEAR;
   const auto widest =
       static_cast<std::uint32_t>(std::bit_floor(std::min<std::uint64_t>(device.max_work_group, 256)));
   const std::uint32_t wanted = options.work_group_size != 0 ? options.work_group_size
@@ -114,6 +130,13 @@ BuildPlan plan_build(const cl::DeviceInfo& device, std::uint64_t count, const Bu
   plan.subtree_size =
       std::max(options.subtree_size != 0 ? options.subtree_size : subtree, options.max_leaf_size);
   plan.chunk_size = options.chunk_size != 0 ? options.chunk_size : serial ? 8192 : 2048;
+  // Where any node may be a leaf, however large, one work-group must see all of them.
+  if (options.published_leaves.on) plan.subtree_size = std::max(plan.subtree_size, plan.count);
+  if (plan.subtree_size > kMostInOneSubtree) {
+    throw Error(ErrorCode::kInvalidArgument, std::to_string(plan.count) +
+                                                 " triangles: the published leaf rule takes at most " +
+                                                 std::to_string(kMostInOneSubtree));
+  }
   if (device.loop_limit != 0) heed_loop_limit(plan, device, options);
   plan.compact_chunk = serial ? 4096 : 512;
   plan.max_tasks = plan.count / plan.subtree_size + 1;

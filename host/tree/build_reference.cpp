@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "gnomon/shared/cost_math.h"
+#include "gnomon/shared/axis_policy.h"
 
 namespace gnomon {
 
@@ -15,6 +15,8 @@ constexpr float kCoordinateLimit = 281474976710656.0F;  // 2^48, as prepare.cl
 // Everything the recursion shares.
 struct Builder {
   const BuildOptions& options;
+  std::span<const Triangle> triangles;
+  GnHeuristic heuristic;
   std::vector<GnPrimitive> primitives;
   std::vector<Node> sparse;
   std::vector<bool> is_split;
@@ -55,48 +57,89 @@ void measure_range(const std::vector<GnPrimitive>& primitives, GnTask& task) {
   }
 }
 
-std::uint32_t bin_on_axis(const GnPrimitive& primitive, const GnTask& task, std::uint32_t axis,
-                          std::uint32_t bins) {
-  const float scale = gn_bin_scale(task.centroid_lo[axis], task.centroid_hi[axis], bins);
-  return gn_bin_of(primitive.lo[axis] + primitive.hi[axis], task.centroid_lo[axis], scale, bins);
+// Where a primitive's bins are taken: twice the middle of its box, or for the published builder three times
+// the barycentre of its triangle.
+float key_of(const Builder& builder, const GnPrimitive& primitive, std::uint32_t axis) {
+  if (!builder.options.published_leaves.on) return primitive.lo[axis] + primitive.hi[axis];
+  const Triangle& t = builder.triangles[primitive.index];
+  return t.v0[axis] + t.v1[axis] + t.v2[axis];
 }
 
-GnSplit best_split_on_axis(const Builder& builder, const GnTask& task, std::uint32_t axis) {
+// Bounds of the keys, on one axis.
+std::pair<float, float> key_bounds(const Builder& builder, const GnTask& task, std::uint32_t axis) {
+  if (!builder.options.published_leaves.on) return {task.centroid_lo[axis], task.centroid_hi[axis]};
+  return {3.0F * task.lo[axis], 3.0F * task.hi[axis]};
+}
+
+float bin_scale_on_axis(const Builder& builder, const GnTask& task, std::uint32_t axis) {
+  const auto [lo, hi] = key_bounds(builder, task, axis);
+  return gn_bin_scale(lo, hi, builder.options.bins);
+}
+
+std::uint32_t bin_on_axis(const Builder& builder, const GnPrimitive& primitive, const GnTask& task,
+                          std::uint32_t axis) {
+  const float base = key_bounds(builder, task, axis).first;
+  // Rounding may leave a barycentre below its box; middles never are.
+  const float key = gn_max(key_of(builder, primitive, axis), base);
+  return gn_bin_of(key, base, bin_scale_on_axis(builder, task, axis), builder.options.bins);
+}
+
+struct Bins {
+  std::vector<GnBin> boxes;
+  std::vector<std::uint32_t> counts;
+};
+
+// Bins of all three axes, axis after axis.
+Bins bins_of(const Builder& builder, const GnTask& task, std::uint32_t usable) {
   const std::uint32_t bins = builder.options.bins;
-  GnBin boxes[GN_MAX_BINS];
-  std::uint32_t counts[GN_MAX_BINS] = {};
-  for (GnBin& box : boxes) gn_empty_box(box.lo, box.hi);
-  for (std::uint32_t i = task.begin; i < task.end; ++i) {
-    const GnPrimitive& p = builder.primitives[i];
-    const std::uint32_t bin = bin_on_axis(p, task, axis, bins);
-    counts[bin] += 1;
-    for (int k = 0; k < 3; ++k) {
-      boxes[bin].lo[k] = gn_min(p.lo[k], boxes[bin].lo[k]);
-      boxes[bin].hi[k] = gn_max(p.hi[k], boxes[bin].hi[k]);
+  Bins out{std::vector<GnBin>(3 * std::size_t{bins}), std::vector<std::uint32_t>(3 * std::size_t{bins})};
+  for (GnBin& box : out.boxes) gn_empty_box(box.lo, box.hi);
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    if ((usable >> axis & 1U) == 0) continue;
+    for (std::uint32_t i = task.begin; i < task.end; ++i) {
+      const GnPrimitive& p = builder.primitives[i];
+      const std::uint32_t bin = axis * bins + bin_on_axis(builder, p, task, axis);
+      out.counts[bin] += 1;
+      for (int k = 0; k < 3; ++k) {
+        out.boxes[bin].lo[k] = gn_min(p.lo[k], out.boxes[bin].lo[k]);
+        out.boxes[bin].hi[k] = gn_max(p.hi[k], out.boxes[bin].hi[k]);
+      }
     }
   }
-  return gn_sweep_axis(boxes, counts, bins, axis, task.end - task.begin);
+  return out;
 }
 
-GnSplit choose_split(const Builder& builder, const GnTask& task) {
-  const std::uint32_t count = task.end - task.begin;
-  GnSplit best{GN_INFINITY, GN_NONE, 0, 0};
-  if (count < 2 || task.depth >= builder.options.median_depth) return best;
+GnNodeView view_of(const Builder& builder, const GnTask& task) {
+  GnNodeView node{};
+  std::copy_n(task.lo, 3, node.lo);
+  std::copy_n(task.hi, 3, node.hi);
+  node.probability = task.probability;
+  node.count = task.end - task.begin;
+  node.depth = task.depth;
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    if (gn_bin_scale(task.centroid_lo[axis], task.centroid_hi[axis], builder.options.bins) <= 0.0F) continue;
-    const GnSplit split = best_split_on_axis(builder, task, axis);
-    if (split.axis != GN_NONE && (best.axis == GN_NONE || gn_split_is_better(&split, &best, count)))
+    if (bin_scale_on_axis(builder, task, axis) > 0.0F) node.usable |= 1U << axis;
+  }
+  return node;
+}
+
+GnSplit choose_split(const Builder& builder, const GnNodeView& node, int precise, const GnTask& task) {
+  GnSplit best = gn_no_split();
+  if (node.count < 2 || task.depth >= builder.heuristic.rules.median_depth) return best;
+  const std::uint32_t bins = builder.options.bins;
+  const std::uint32_t planes = bins - 1 - (builder.options.published_leaves.on ? 1 : 0);
+  const Bins binned = bins_of(builder, task, node.usable);
+  if (builder.options.axes != AxisPolicy::kAll) {
+    return gn_policy_split(&builder.heuristic, precise, &node, binned.boxes.data(), binned.counts.data(),
+                           planes, bins);
+  }
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    if ((node.usable >> axis & 1U) == 0) continue;
+    const GnSplit split = gn_sweep_axis(&builder.heuristic.measure, precise, &binned.boxes[axis * bins],
+                                        &binned.counts[axis * bins], planes, bins, axis, node.count);
+    if (split.axis != GN_NONE && (best.axis == GN_NONE || gn_split_is_better(&split, &best, node.count)))
       best = split;
   }
   return best;
-}
-
-bool becomes_leaf(const BuildOptions& options, const GnTask& task, const GnSplit& split) {
-  const std::uint32_t count = task.end - task.begin;
-  if (count > options.max_leaf_size) return false;
-  if (count == 1) return true;
-  return gn_leaf_is_better(&split, gn_box_measure(task.lo, task.hi), count, options.cost_traversal,
-                           options.cost_triangle) != 0;
 }
 
 // Stable, so that leaf order does not depend on how the work is cut.
@@ -105,36 +148,43 @@ std::uint32_t partition(Builder& builder, const GnTask& task, const GnSplit& spl
   const auto last = builder.primitives.begin() + task.end;
   if (split.axis == GN_NONE) return task.begin + (task.end - task.begin) / 2;
   const auto middle = std::stable_partition(first, last, [&](const GnPrimitive& p) {
-    return bin_on_axis(p, task, split.axis, builder.options.bins) <= split.plane;
+    return bin_on_axis(builder, p, task, split.axis) <= split.plane;
   });
   return static_cast<std::uint32_t>(middle - builder.primitives.begin());
 }
 
-void push_child(Builder& builder, std::uint32_t begin, std::uint32_t end, std::uint32_t slot,
-                std::uint32_t depth) {
-  GnTask child{};
-  child.begin = begin;
-  child.end = end;
-  child.slot = slot;
-  child.depth = depth;
+void push_child(Builder& builder, const GnTask& task, float probability) {
+  GnTask child = task;
+  child.probability = probability;
   measure_range(builder.primitives, child);
   builder.open.push_back(child);
 }
 
+GnTask task_of(std::uint32_t begin, std::uint32_t end, std::uint32_t slot, std::uint32_t depth) {
+  GnTask task{};
+  task.begin = begin;
+  task.end = end;
+  task.slot = slot;
+  task.depth = depth;
+  return task;
+}
+
 void build_node(Builder& builder, const GnTask& task) {
-  const GnSplit split = choose_split(builder, task);
+  const GnNodeView view = view_of(builder, task);
+  const int precise = gn_measure_is_precise(&builder.heuristic.measure, task.lo, task.hi);
+  const GnSplit split = choose_split(builder, view, precise, task);
   Node node{};
   std::copy_n(task.lo, 3, node.lo);
   std::copy_n(task.hi, 3, node.hi);
-  if (becomes_leaf(builder.options, task, split)) {
+  if (gn_becomes_leaf(&builder.heuristic, precise, &view, &split) != 0) {
     node.first = task.begin;
     node.count = task.end - task.begin;
   } else {
     const std::uint32_t middle = partition(builder, task, split);
     node.first = 2 * middle;
     builder.is_split[middle] = true;
-    push_child(builder, task.begin, middle, 2 * middle, task.depth + 1);
-    push_child(builder, middle, task.end, 2 * middle + 1, task.depth + 1);
+    push_child(builder, task_of(task.begin, middle, 2 * middle, task.depth + 1), split.left_measure);
+    push_child(builder, task_of(middle, task.end, 2 * middle + 1, task.depth + 1), split.right_measure);
   }
   builder.sparse[task.slot] = node;
 }
@@ -164,12 +214,13 @@ Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& opt
   Bvh bvh;
   if (triangles.empty()) return bvh;
   const auto count = static_cast<std::uint32_t>(triangles.size());
-  Builder builder{options, {}, {}, {}, {}};
+  Builder builder{options, triangles, {}, {}, {}, {}, {}};
   builder.primitives.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) builder.primitives.push_back(primitive_of(triangles[i], i));
   builder.sparse.resize(2 * static_cast<std::size_t>(count));
   builder.is_split.resize(count);
-  push_child(builder, 0, count, 0, 0);
+  push_child(builder, task_of(0, count, 0, 0), GN_FLOAT_MAX);
+  builder.heuristic = heuristic_of(options, builder.open.back().lo, builder.open.back().hi);
   while (!builder.open.empty()) {
     const GnTask task = builder.open.back();
     builder.open.pop_back();

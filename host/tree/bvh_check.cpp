@@ -97,7 +97,8 @@ MaybeFault check_leaves(const Bvh& bvh, const Walk& walk, const BuildOptions& op
     if (next > bvh.primitives.size()) {
       return fault("leaf ranges: ends at " + text(next) + " of " + text(bvh.primitives.size()), index);
     }
-    if (node.count > options.max_leaf_size) {
+    // The published rule makes leaves of nodes it cannot divide, however large.
+    if (!options.published_leaves.on && node.count > options.max_leaf_size) {
       return fault("leaf size: " + text(node.count) + " above " + text(options.max_leaf_size), index);
     }
   }
@@ -191,7 +192,8 @@ MaybeFault check_numbering(const Bvh& bvh, const Walk& walk) {
 MaybeFault check_depth(const Bvh& bvh, const Walk& walk, const BuildOptions& options) {
   const auto halvings =
       static_cast<std::uint32_t>(std::bit_width(bvh.primitives.size() - 1));  // ceil(log2(n))
-  const std::uint32_t limit = options.median_depth + halvings + 1;
+  const std::uint32_t limit = options.published_leaves.on ? options.published_leaves.max_depth + 1
+                                                          : options.median_depth + halvings + 1;
   const auto deepest = std::max_element(walk.depth.begin(), walk.depth.end());
   if (*deepest <= limit) return std::nullopt;
   return fault("depth: " + text(*deepest) + " above " + text(limit),

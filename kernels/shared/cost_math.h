@@ -1,11 +1,11 @@
-// What decides a tree: box measures, binning and the split sweep. Compiled by both compilers and free of division,
+// What decides a tree: binning and the split sweep. Compiled by both compilers and free of division,
 // so that every device and the reference builder take bitwise the same decisions (needs -ffp-contract=off on the
 // host; kernels switch contraction off in scalar.h). Not for intersection tests (hit_math.h).
-// Feeds split_reference.cpp, bin.cl, subtree.cl.
+// Feeds axis_policy.h, bin.h and the reference builder.
 #ifndef GNOMON_SHARED_COST_MATH_H
 #define GNOMON_SHARED_COST_MATH_H
 
-#include "build_layout.h"
+#include "measure_math.h"
 
 // Where bins live when a sweep reads them: local memory on a device.
 #ifdef __OPENCL_VERSION__
@@ -13,25 +13,6 @@
 #else
 #define GN_BINS_SPACE
 #endif
-
-// The hit probability of a box up to a constant: half its surface area (Goldsmith & Salmon 1987).
-// This is the heuristic seam: another ray distribution is another measure.
-GN_INLINE gn_f32 gn_box_measure(const gn_f32* lo, const gn_f32* hi) {
-  const gn_f32 dx = hi[0] - lo[0];
-  const gn_f32 dy = hi[1] - lo[1];
-  const gn_f32 dz = hi[2] - lo[2];
-  return dx * (dy + dz) + dy * dz;
-}
-
-// 1 / x for normal x > 0 within 2 ulp, from integer and multiply-subtract steps only: the same bits on every device
-// (OpenCL allows division to differ by 2.5 ulp). Scaling x by a power of two scales the result exactly.
-GN_INLINE gn_f32 gn_reciprocal(gn_f32 x) {
-  gn_f32 r = gn_float_of(0x7ef311c7u - gn_bits_of(x));
-  r = r * (2.0f - x * r);
-  r = r * (2.0f - x * r);
-  r = r * (2.0f - x * r);
-  return r;
-}
 
 // Extents below this (2^-100) cannot be divided into bins; the axis then offers no split.
 #define GN_SMALLEST_EXTENT 7.8886091e-31f
@@ -48,11 +29,13 @@ GN_INLINE gn_u32 gn_bin_of(gn_f32 twice_centroid, gn_f32 centroid_lo, gn_f32 sca
   return bin < bins ? bin : bins - 1u;
 }
 
-// Whether candidate a beats b: lower cost, then the more even division. Callers offer candidates by rising axis and
-// plane, so the first of equals stays: a total order, the same on every device.
+// Whether candidate a beats b: lower cost, then lower cost by surface area, then the more even division. Callers offer
+// candidates by rising axis and plane, so the first of equals stays: a total order, the same on every device.
 GN_INLINE int gn_split_is_better(const GnSplit* a, const GnSplit* b, gn_u32 count) {
   if (a->cost < b->cost) return 1;
   if (!(a->cost == b->cost)) return 0;
+  if (a->tie < b->tie) return 1;
+  if (!(a->tie == b->tie)) return 0;
   {
     const gn_u32 even_a = a->left_count < count - a->left_count ? a->left_count : count - a->left_count;
     const gn_u32 even_b = b->left_count < count - b->left_count ? b->left_count : count - b->left_count;
@@ -76,36 +59,67 @@ GN_INLINE void gn_grow_box(gn_f32* lo, gn_f32* hi, GN_BINS_SPACE const GnBin* bi
   }
 }
 
-// Best plane of one axis: bins [0, plane] go left. cost is measure(L) n_L + measure(R) n_R, without constants.
-// axis == GN_NONE when all centroids share a bin. bins and counts are the axis' own, bin_count of each.
-GN_INLINE GnSplit gn_sweep_axis(GN_BINS_SPACE const GnBin* bins, GN_BINS_SPACE const gn_u32* counts, gn_u32 bin_count,
+GN_INLINE GnSplit gn_no_split(void) {
+  GnSplit none = {GN_INFINITY, GN_NONE, 0u, 0u, 0.0f, GN_FLOAT_MAX, GN_FLOAT_MAX, 0u};
+  return none;
+}
+
+// Best plane of one axis: bins [0, plane] go left, plane < plane_count. cost is measure(L) n_L + measure(R) n_R, without
+// constants. axis == GN_NONE when all centroids share a side of every plane. bins and counts are the axis' own.
+GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int precise, GN_BINS_SPACE const GnBin* bins,
+                                GN_BINS_SPACE const gn_u32* counts, gn_u32 plane_count, gn_u32 bin_count,
                                 gn_u32 axis, gn_u32 count) {
-  gn_f32 right_cost[GN_MAX_BINS];
-  gn_f32 lo[3], hi[3], cost = 0.0f;
+  gn_f32 right_cost[GN_MAX_BINS], right_measure[GN_MAX_BINS], right_tie[GN_MAX_BINS];
+  gn_f32 lo[3], hi[3], area = 0.0f, cost = 0.0f, tie = 0.0f;
   gn_u32 i, seen = 0u;
-  GnSplit best = {GN_INFINITY, GN_NONE, 0u, 0u};
+  GnSplit best = gn_no_split();
   gn_empty_box(lo, hi);
   for (i = bin_count - 1u; i > 0u; --i) {
     if (counts[i] > 0u) {
       gn_grow_box(lo, hi, &bins[i]);
       seen += counts[i];
-      cost = gn_box_measure(lo, hi) * (gn_f32)seen;
+      area = gn_box_measure(measure, precise, lo, hi);
+      cost = area * (gn_f32)seen;
+      if (measure->breaks_ties) tie = gn_surface_measure(lo, hi) * (gn_f32)seen;
     }
+    right_measure[i] = area;
     right_cost[i] = cost;
+    right_tie[i] = tie;
   }
   gn_empty_box(lo, hi);
   seen = 0u;
-  for (i = 0u; i + 1u < bin_count; ++i) {
+  for (i = 0u; i < plane_count; ++i) {
     if (counts[i] == 0u) continue;  // the plane before this bin divides alike
     gn_grow_box(lo, hi, &bins[i]);
     seen += counts[i];
     if (seen < count) {
-      GnSplit candidate = {0.0f, axis, i, seen};
-      candidate.cost = gn_box_measure(lo, hi) * (gn_f32)seen + right_cost[i + 1u];
+      GnSplit candidate = {0.0f, axis, i, seen, 0.0f, 0.0f, right_measure[i + 1u], 0u};
+      candidate.left_measure = gn_box_measure(measure, precise, lo, hi);
+      candidate.cost = candidate.left_measure * (gn_f32)seen + right_cost[i + 1u];
+      if (measure->breaks_ties) candidate.tie = gn_surface_measure(lo, hi) * (gn_f32)seen + right_tie[i + 1u];
       if (best.axis == GN_NONE || gn_split_is_better(&candidate, &best, count)) best = candidate;
     }
   }
   return best;
+}
+
+// Rates a split found by other means with this measure: its cost and its sides' measures.
+GN_INLINE void gn_rate_split(const GnMeasure* measure, int precise, GN_BINS_SPACE const GnBin* bins,
+                             GN_BINS_SPACE const gn_u32* counts, gn_u32 bin_count, gn_u32 count, GnSplit* split) {
+  gn_f32 lo[3], hi[3];
+  gn_u32 i;
+  gn_empty_box(lo, hi);
+  for (i = 0u; i <= split->plane; ++i) {
+    if (counts[i] > 0u) gn_grow_box(lo, hi, &bins[i]);
+  }
+  split->left_measure = gn_box_measure(measure, precise, lo, hi);
+  gn_empty_box(lo, hi);
+  for (i = split->plane + 1u; i < bin_count; ++i) {
+    if (counts[i] > 0u) gn_grow_box(lo, hi, &bins[i]);
+  }
+  split->right_measure = gn_box_measure(measure, precise, lo, hi);
+  split->cost = split->left_measure * (gn_f32)split->left_count +
+                split->right_measure * (gn_f32)(count - split->left_count);
 }
 
 // Whether `count` triangles are cheaper tested here than divided by `split` (which may be none).
@@ -114,6 +128,25 @@ GN_INLINE int gn_leaf_is_better(const GnSplit* split, gn_f32 node_measure, gn_u3
   if (split->axis == GN_NONE) return 1;
   return cost_triangle * ((gn_f32)count * node_measure) <=
          cost_traversal * node_measure + cost_triangle * split->cost;
+}
+
+// Completes a heuristic for the root's box: the scale of surface areas, and the weights of a mixture
+// share A(K)/A(root) + (1 - share) S(K)/S(root).
+GN_INLINE void gn_settle_heuristic(GnHeuristic* h, const gn_f32* lo, const gn_f32* hi) {
+  const gn_f32 surface = gn_surface_measure(lo, hi);
+  const gn_f32 scale = surface > 1e-30f ? gn_reciprocal(surface) : 1.0f;
+  const gn_f32 share = h->measure.area_share;
+  int k;
+  h->surface = h->measure;
+  h->surface.kind = GN_MEASURE_LINEAR;
+  h->surface.breaks_ties = 0u;
+  for (k = 0; k < 3; ++k) h->surface.weights[k] = scale;
+  if (share < 1.0f) {
+    const gn_f32 whole = gn_box_measure(&h->measure, gn_measure_is_precise(&h->measure, lo, hi), lo, hi);
+    const gn_f32 area_scale = whole > 1e-30f ? share * gn_reciprocal(whole) : 0.0f;
+    for (k = 0; k < 3; ++k) h->measure.weights[k] = h->measure.weights[k] * area_scale + (1.0f - share) * scale;
+    h->measure.area_scale *= area_scale;
+  }
 }
 
 #endif

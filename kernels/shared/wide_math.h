@@ -4,7 +4,7 @@
 #ifndef GNOMON_SHARED_WIDE_MATH_H
 #define GNOMON_SHARED_WIDE_MATH_H
 
-#include "scalar.h"
+#include "elementary_math.h"
 
 #if GN_HAS_FP64
 
@@ -113,13 +113,8 @@ GN_INLINE int gn_wide_is_certain(GnWide a, GnWide permanent) {
   return gn_abs(a.high) > 9.0949470e-13f * permanent.high + 1e-33f;
 }
 
-// The power of two that brings x near 1 (clamped to float's normal range): products of three coordinates of 2^48 would
-// overflow, of 2^-48 would lose their low parts.
-GN_INLINE gn_f32 gn_wide_unit(gn_f32 x) {
-  const gn_u32 exponent = gn_bits_of(x) & 0x7f800000u;
-  if (exponent == 0u) return gn_float_of(0x7e800000u);  // 2^126
-  return gn_float_of(exponent >= 0x7e800000u ? 0x00800000u : 0x7f000000u - exponent);
-}
+// Products of three coordinates of 2^48 would overflow, of 2^-48 would lose their low parts.
+GN_INLINE gn_f32 gn_wide_unit(gn_f32 x) { return gn_power_near_reciprocal(x); }
 
 GN_INLINE GnWide gn_wide_times_unit(GnWide a, gn_f32 unit) {
   GnWide r;

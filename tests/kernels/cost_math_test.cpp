@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "gnomon/tree/build_options.h"
 #include "support/shapes.h"
 
 using gnomon::test::Random;
@@ -48,18 +49,26 @@ TEST_CASE("an axis without extent offers no split") {
 }
 
 TEST_CASE("of equally cheap splits the more even one wins, then the first") {
-  const GnSplit uneven{1.0F, 0, 0, 1};
-  const GnSplit even{1.0F, 0, 3, 5};
-  const GnSplit later{1.0F, 2, 7, 5};
+  const auto split = [](float cost, std::uint32_t axis, std::uint32_t plane, std::uint32_t left,
+                        float tie = 0.0F) { return GnSplit{cost, axis, plane, left, tie, 0.0F, 0.0F, 0}; };
+  const GnSplit uneven = split(1.0F, 0, 0, 1);
+  const GnSplit even = split(1.0F, 0, 3, 5);
+  const GnSplit later = split(1.0F, 2, 7, 5);
   REQUIRE(gn_split_is_better(&even, &uneven, 10) != 0);
   REQUIRE(gn_split_is_better(&uneven, &even, 10) == 0);
   REQUIRE(gn_split_is_better(&later, &even, 10) == 0);
-  const GnSplit cheap{0.5F, 0, 0, 1};
+  const GnSplit cheap = split(0.5F, 0, 0, 1);
   REQUIRE(gn_split_is_better(&cheap, &even, 10) != 0);
+  const GnSplit small = split(1.0F, 0, 0, 1, 3.0F);
+  const GnSplit large = split(1.0F, 0, 3, 5, 4.0F);
+  REQUIRE(gn_split_is_better(&small, &large, 10) != 0);
+  REQUIRE(gn_split_is_better(&large, &small, 10) == 0);
 }
 
 TEST_CASE("the measure is half the surface area") {
   const float lo[3] = {1, 2, 3};
   const float hi[3] = {2, 4, 6};
-  REQUIRE(gn_box_measure(lo, hi) == 11.0F);
+  REQUIRE(gn_surface_measure(lo, hi) == 11.0F);
+  const GnMeasure measure = gnomon::surface_area_measure();
+  REQUIRE(gn_box_measure(&measure, 0, lo, hi) == 11.0F);
 }

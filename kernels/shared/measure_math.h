@@ -1,0 +1,47 @@
+// How likely rays are to hit a box, up to a constant: the surface area (rays from everywhere) or the area as the rays
+// of a light see it (the projected area heuristic). Compiled by both compilers, without division, square root or a
+// library call: the same bits on every device. Not exact references (host/areas/projection.h is, in double).
+// A measure is monotone under inclusion and additive over candidates, so builders may treat all alike.
+// Sources: Goldsmith & Salmon 1987 (surface area); Havran & Bittner 1999 (preferred directions); Van Oosterom &
+// Strackee 1983 (solid angle of a triangle). Feeds cost_math.h.
+#ifndef GNOMON_SHARED_MEASURE_MATH_H
+#define GNOMON_SHARED_MEASURE_MATH_H
+
+#include "seen_measure.h"
+
+// w . (dy dz, dx dz, dx dy). Weights 1: half the surface area (SAH). Weights |n|: the area parallel rays along n see
+// (PAH). Means over a cone of directions, and mixtures of all these, are other weights and cost the same.
+GN_INLINE gn_f32 gn_linear_measure(const gn_f32* w, const gn_f32* lo, const gn_f32* hi) {
+  const gn_f32 dx = hi[0] - lo[0];
+  const gn_f32 dy = hi[1] - lo[1];
+  const gn_f32 dz = hi[2] - lo[2];
+  return dx * (w[1] * dz + w[2] * dy) + w[0] * dy * dz;
+}
+
+// Half the surface area, which settles ties whatever the measure.
+GN_INLINE gn_f32 gn_surface_measure(const gn_f32* lo, const gn_f32* hi) {
+  const gn_f32 dx = hi[0] - lo[0];
+  const gn_f32 dy = hi[1] - lo[1];
+  const gn_f32 dz = hi[2] - lo[2];
+  return dx * (dy + dz) + dy * dz;
+}
+
+// 1: compiled for linear measures alone, without the code of the others.
+#ifndef GN_LINEAR_ONLY
+#define GN_LINEAR_ONLY 0
+#endif
+
+// Whether the parts of a node with this box must be measured precisely.
+GN_INLINE int gn_measure_is_precise(const GnMeasure* measure, const gn_f32* lo, const gn_f32* hi) {
+  return !GN_LINEAR_ONLY && gn_needs_precise(measure, lo, hi);
+}
+
+// The heuristic seam: what a builder minimises. precise: gn_measure_is_precise of the node whose parts are measured, so that
+// all its candidates are compared by one formula.
+GN_INLINE gn_f32 gn_box_measure(const GnMeasure* measure, int precise, const gn_f32* lo, const gn_f32* hi) {
+  if (GN_LINEAR_ONLY || measure->kind == GN_MEASURE_LINEAR) return gn_linear_measure(measure->weights, lo, hi);
+  return measure->area_scale * gn_seen_measure(measure, precise, lo, hi) +
+         gn_linear_measure(measure->weights, lo, hi);
+}
+
+#endif

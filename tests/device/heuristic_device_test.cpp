@@ -1,0 +1,127 @@
+// Every measure and axis policy on the device, against the reference builder: the same bytes.
+#include <catch2/catch.hpp>
+
+#include "gnomon/device/build_device.h"
+#include "gnomon/tree/build_reference.h"
+#include "gnomon/tree/bvh_check.h"
+#include "support/device.h"
+#include "support/measures.h"
+#include "support/shapes.h"
+
+using gnomon::AxisPolicy;
+using gnomon::BuildOptions;
+using gnomon::Bvh;
+using gnomon::test::context;
+
+namespace {
+
+// Hash of the tree, after device and reference agreed on it.
+std::string same_tree(const std::vector<GnTriangle>& triangles, const BuildOptions& options) {
+  CAPTURE(gnomon::heuristic_name(options), options.work_group_size);
+  const Bvh device = gnomon::download_bvh(context(), gnomon::build_device(context(), triangles, options));
+  const Bvh reference = gnomon::build_reference(triangles, options);
+  const auto fault = gnomon::check_bvh(device, triangles, options);
+  if (fault) FAIL(fault->what << " at node " << fault->node);
+  REQUIRE(device.nodes.size() == reference.nodes.size());
+  REQUIRE(device.primitives == reference.primitives);
+  REQUIRE(gnomon::tree_hash(device) == gnomon::tree_hash(reference));
+  return gnomon::tree_hash(device);
+}
+
+}  // namespace
+
+// Weighing one node by a window or from a point takes more turns than a device that ends long loops allows.
+TEST_CASE("every measure builds the reference's tree, through large nodes and small ones", "[unlimited]") {
+  const auto triangles = gnomon::test::soup(1500, 91);
+  std::vector<std::string> hashes;
+  for (const auto& [name, measure] : gnomon::test::every_measure()) {
+    CAPTURE(name);
+    BuildOptions options;
+    options.measure = measure;
+    options.work_group_size = 1;
+    options.subtree_size = 256;
+    options.chunk_size = 200;
+    hashes.push_back(same_tree(triangles, options));
+  }
+  // Different measures see different boxes: a measure that is not heeded would repeat another's tree.
+  std::sort(hashes.begin(), hashes.end());
+  REQUIRE(std::unique(hashes.begin(), hashes.end()) == hashes.end());
+}
+
+// One work-group builds the whole tree where the published leaf rule holds: too much for a device that ends
+// long loops.
+TEST_CASE("axis policies, published and repaired, choose what the reference chooses", "[unlimited]") {
+  const auto triangles = gnomon::test::soup(700, 92);
+  for (const auto& [name, measure] : gnomon::test::every_measure()) {
+    for (const AxisPolicy axes : {AxisPolicy::kSpfh, AxisPolicy::kLsph}) {
+      for (const bool repaired : {false, true}) {
+        CAPTURE(name, repaired);
+        BuildOptions options;
+        options.measure = measure;
+        options.axes = axes;
+        options.policy.repaired = repaired;
+        options.published_leaves.on = !repaired;
+        options.bins = repaired ? 16 : 40;
+        options.work_group_size = 1;
+        same_tree(triangles, options);
+      }
+    }
+  }
+}
+
+namespace {
+
+void require_same_in_groups(std::size_t which, AxisPolicy axes) {
+  const auto measures = gnomon::test::every_measure();
+  CAPTURE(measures[which].first);
+  BuildOptions options;
+  options.measure = measures[which].second;
+  options.axes = axes;
+  options.work_group_size = 16;
+  options.subtree_size = 64;
+  options.chunk_size = 64;
+  same_tree(gnomon::test::soup(300, 93), options);
+}
+
+}  // namespace
+
+TEST_CASE("the cooperative flavour heeds linear measures and policies", "[portable]") {
+  for (const AxisPolicy axes : {AxisPolicy::kAll, AxisPolicy::kSpfh, AxisPolicy::kLsph})
+    require_same_in_groups(1, axes);
+}
+
+TEST_CASE("the cooperative flavour heeds windows and points", "[unlimited]") {
+  for (const std::size_t which : {2U, 4U, 6U, 8U}) require_same_in_groups(which, AxisPolicy::kAll);
+}
+
+TEST_CASE("a device that ends long loops refuses measures that need them") {
+  gnomon::cl::DeviceInfo limited = context().device();
+  limited.loop_limit = 65535;
+  BuildOptions options;
+  options.measure = gnomon::test::every_measure()[2].second;
+  REQUIRE_THROWS_WITH(gnomon::build_memory(limited, 1000, options), Catch::Contains("pah-window"));
+}
+
+TEST_CASE("the published leaf rule ends where it says", "[unlimited]") {
+  const auto triangles = gnomon::test::soup(400, 94);
+  BuildOptions options;
+  options.axes = AxisPolicy::kLsph;
+  options.measure.area_share = 0.0F;
+  options.policy.repaired = false;
+  options.policy.quality_threshold = 0.99F;
+  options.published_leaves.on = true;
+  options.bins = 40;
+  const std::string plain = same_tree(triangles, options);
+  const auto stats = gnomon::stats_of(gnomon::build_reference(triangles, options), options);
+  REQUIRE(stats.leaves > 300);  // down to single triangles
+  const auto with = [&](auto set) {
+    BuildOptions changed = options;
+    set(changed.published_leaves);
+    return same_tree(triangles, changed);
+  };
+  REQUIRE(with([](auto& leaves) { leaves.min_split = 6; }) != plain);
+  REQUIRE(with([](auto& leaves) { leaves.max_depth = 5; }) != plain);
+  REQUIRE(with([](auto& leaves) { leaves.max_cost = 0.05F; }) != plain);
+  REQUIRE(with([](auto& leaves) { leaves.max_probability = 0.02F; }) != plain);
+  REQUIRE(with([](auto& leaves) { leaves.max_area = 10.0F; }) != plain);
+}

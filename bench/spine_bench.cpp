@@ -9,7 +9,6 @@
 // launch; Embree's, filling an RTCRayHit per ray from the same array and writing a 16-byte hit back, as any
 // caller with a batch must.
 #include <embree3/rtcore.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,64 +18,25 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
-#include "gnomon/base/stats.h"
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/trace_device.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon/scene/ray_set.h"
 #include "gnomon_commit.h"
+#include "paired.h"
 
 namespace {
 
 using gnomon::Hit;
 using gnomon::Ray;
-using nlohmann::json;
+using gnomon::bench::json;
+using gnomon::bench::measure;
+using gnomon::bench::Paired;
+using gnomon::bench::spread_json;
 
 constexpr int kRounds = 7;
 constexpr std::uint64_t kRays = 262144;
 constexpr std::uint64_t kSeed = 1;
-
-// CPU time of all threads: time lost to other processes does not count.
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-json spread_json(const std::vector<double>& values) {
-  const gnomon::Spread s = gnomon::spread_of(values);
-  return {{"median", s.median}, {"min", s.min}, {"max", s.max}, {"n", s.count}};
-}
-
-// Seconds of both sides over the rounds; the one that goes first changes every round.
-struct Paired {
-  std::vector<double> ours;
-  std::vector<double> peer;
-};
-
-template <typename Ours, typename Peer>
-Paired measure(const Ours& ours, const Peer& peer) {
-  const auto timed = [](const auto& work) {
-    const double start = cpu_seconds();
-    work();
-    return cpu_seconds() - start;
-  };
-  ours();
-  peer();
-  Paired out;
-  for (int round = 0; round < kRounds; ++round) {
-    if (round % 2 == 0) {
-      out.ours.push_back(timed(ours));
-      out.peer.push_back(timed(peer));
-    } else {
-      out.peer.push_back(timed(peer));
-      out.ours.push_back(timed(ours));
-    }
-  }
-  return out;
-}
 
 // Rates in millions a second, and the ratio's median over rounds (above 1: we are faster).
 void add_rates(json& row, const Paired& times, double items, const char* unit) {
@@ -208,8 +168,8 @@ class SceneBench {
     const auto ours = [&] { tree_ = gnomon::build_device(context_, scene_.triangles, {}, &report); };
     json row = common_;
     row["task"] = "build";
-    add_rates(row, measure(ours, [&] { peer.build(); }), static_cast<double>(scene_.triangles.size()),
-              "mtris_per_s");
+    add_rates(row, measure(kRounds, ours, [&] { peer.build(); }),
+              static_cast<double>(scene_.triangles.size()), "mtris_per_s");
     for (const auto& [stage, ms] : report.stages) row["stages_ms"][stage] = ms;
     const gnomon::Bvh bvh = gnomon::download_bvh(context_, tree_);
     row["tree_hash"] = gnomon::tree_hash(bvh);
@@ -237,7 +197,7 @@ class SceneBench {
       row["rays"] = kind;
       row["ray_count"] = rays.size();
       row["peer_mode"] = peer == &robust ? "ROBUST" : "default";
-      add_rates(row, measure(ours, theirs), static_cast<double>(rays.size()), "mrays_per_s");
+      add_rates(row, measure(kRounds, ours, theirs), static_cast<double>(rays.size()), "mrays_per_s");
       row["differing_answers"] =
           any ? differing_any(answer_buffer, occluded) : differing_closest(answer_buffer, hits);
       std::printf("%s\n", row.dump().c_str());
@@ -274,17 +234,11 @@ class SceneBench {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Before the first OpenCL call: PoCL reads it once.
-  setenv("POCL_MAX_PTHREAD_COUNT", "1", 0);
   try {
-    const char* choice = std::getenv("GNOMON_DEVICE");
-    const gnomon::cl::Context context(
-        gnomon::cl::choose_device(gnomon::cl::list_devices(), choice == nullptr ? "" : choice));
-    std::vector<std::pair<std::string, std::uint64_t>> scenes;
-    for (int i = 1; i + 1 < argc; i += 2)
-      scenes.emplace_back(argv[i], std::strtoull(argv[i + 1], nullptr, 10));
-    if (scenes.empty()) scenes = {{"city", 1000000}, {"atrium", 1000000}};
-    for (const auto& [name, triangles] : scenes) SceneBench(context, name, triangles).run();
+    const gnomon::cl::Context context = gnomon::bench::one_thread_context();
+    for (const auto& [name, triangles] : gnomon::bench::scenes_from(argc, argv)) {
+      SceneBench(context, name, triangles).run();
+    }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "spine_bench: %s\n", error.what());
     return 1;

@@ -29,7 +29,7 @@ bool is_finite(const float* values, std::size_t count) {
 }
 
 void check_measure(const GnMeasure& m) {
-  require(m.kind <= GN_MEASURE_YAW_PITCH, "measure.kind", std::to_string(m.kind), "0..4");
+  require(m.kind <= GN_MEASURE_CUSTOM, "measure.kind", std::to_string(m.kind), "0..5");
   require(m.area_share >= 0.0F && m.area_share <= 1.0F, "measure.area_share", std::to_string(m.area_share),
           "[0, 1]");
   const bool finite = is_finite(m.weights, 3) && is_finite(m.origin, 3) && is_finite(m.right, 3) &&
@@ -80,8 +80,8 @@ const char* to_string(AxisPolicy policy) {
 }
 
 std::string heuristic_name(const BuildOptions& options) {
-  static constexpr const char* kKinds[] = {"pah", "pah-window", "pah-solid-angle", "pah-near-plane",
-                                           "pah-yaw-pitch"};
+  static constexpr const char* kKinds[] = {"pah",           "pah-window", "pah-solid-angle", "pah-near-plane",
+                                           "pah-yaw-pitch", "custom"};
   const GnMeasure& m = options.measure;
   const bool even = m.weights[0] == m.weights[1] && m.weights[1] == m.weights[2];
   const bool surface = (m.kind == GN_MEASURE_LINEAR && even) || m.area_share == 0.0F;

@@ -28,6 +28,7 @@ GN_SIZE_IS(GnBin, 32);
 #define GN_MEASURE_SOLID_ANGLE 2u  // rays from origin, uniform in steradians
 #define GN_MEASURE_NEAR_PLANE 3u   // rays from origin, uniform over a plane across forward
 #define GN_MEASURE_YAW_PITCH 4u    // rays from origin, uniform in yaw (about up) and pitch
+#define GN_MEASURE_CUSTOM 5u       // your own (custom_measure.h)
 typedef struct GnMeasure {
   gn_f32 weights[3];   // of the faces across x, y, z; added to the area's measure
   gn_u32 kind;

@@ -7,6 +7,7 @@
 #ifndef GNOMON_SHARED_MEASURE_MATH_H
 #define GNOMON_SHARED_MEASURE_MATH_H
 
+#include "custom_measure.h"
 #include "seen_measure.h"
 
 // w . (dy dz, dx dz, dx dy). Weights 1: half the surface area (SAH). Weights |n|: the area parallel rays along n see
@@ -33,15 +34,18 @@ GN_INLINE gn_f32 gn_surface_measure(const gn_f32* lo, const gn_f32* hi) {
 
 // Whether the parts of a node with this box must be measured precisely.
 GN_INLINE int gn_measure_is_precise(const GnMeasure* measure, const gn_f32* lo, const gn_f32* hi) {
-  return !GN_LINEAR_ONLY && gn_needs_precise(measure, lo, hi);
+  return !GN_LINEAR_ONLY && measure->kind != GN_MEASURE_CUSTOM && gn_needs_precise(measure, lo, hi);
 }
 
 // The heuristic seam: what a builder minimises. precise: gn_measure_is_precise of the node whose parts are measured, so that
 // all its candidates are compared by one formula.
 GN_INLINE gn_f32 gn_box_measure(const GnMeasure* measure, int precise, const gn_f32* lo, const gn_f32* hi) {
   if (GN_LINEAR_ONLY || measure->kind == GN_MEASURE_LINEAR) return gn_linear_measure(measure->weights, lo, hi);
-  return measure->area_scale * gn_seen_measure(measure, precise, lo, hi) +
-         gn_linear_measure(measure->weights, lo, hi);
+  {
+    const gn_f32 seen = measure->kind == GN_MEASURE_CUSTOM ? gn_custom_measure(measure, lo, hi)
+                                                           : gn_seen_measure(measure, precise, lo, hi);
+    return measure->area_scale * seen + gn_linear_measure(measure->weights, lo, hi);
+  }
 }
 
 #endif

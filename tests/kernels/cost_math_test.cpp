@@ -72,3 +72,18 @@ TEST_CASE("the measure is half the surface area") {
   const GnMeasure measure = gnomon::surface_area_measure();
   REQUIRE(gn_box_measure(&measure, 0, lo, hi) == 11.0F);
 }
+
+// What CONTRIBUTING and the note on heuristics point to: a measure of one's own is one function.
+TEST_CASE("the custom measure's example is Steiner's: the surface of the box grown by a ball, halved") {
+  GnMeasure measure = gnomon::surface_area_measure();
+  std::fill_n(measure.weights, 3, 0.0F);
+  measure.kind = GN_MEASURE_CUSTOM;
+  measure.half_width = 0.5F;
+  const float lo[3] = {1, 2, 3};
+  const float hi[3] = {2, 4, 6};
+  const double pi = std::acos(-1.0);
+  const double grown = 11.0 + pi * 0.5 * 6.0 + 2.0 * pi * 0.25;
+  REQUIRE(gn_measure_is_precise(&measure, lo, hi) == 0);
+  REQUIRE(gn_box_measure(&measure, 0, lo, hi) == Approx(grown).epsilon(1e-6));
+  REQUIRE(gn_box_measure(&measure, 0, lo, lo) == Approx(2.0 * pi * 0.25).epsilon(1e-6));  // a point is a ball
+}

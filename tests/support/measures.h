@@ -50,6 +50,8 @@ inline std::vector<std::pair<std::string, GnMeasure>> every_measure() {
     near_point.area_share = 0.75F;
     out.emplace_back("mixed point measure " + std::to_string(kind), near_point);
   }
+  GnMeasure thick = framed(GN_MEASURE_CUSTOM, {0, 0, 0}, 0.3F, 0);
+  out.emplace_back("custom: thick rays", thick);
   plane.area_share = 0.5F;
   out.emplace_back("mixed parallel rays", plane);
   return out;

@@ -2,6 +2,11 @@
 // devices and contexts live in gnomon::cl. Pictures are apart (gnomon/render/render.h).
 #pragma once
 
+#include "gnomon/areas/area_rays.h"
+#include "gnomon/areas/areas_from_scene.h"
+#include "gnomon/areas/influence_area.h"
+#include "gnomon/areas/membership.h"
+#include "gnomon/areas/projection.h"
 #include "gnomon/base/error.h"
 #include "gnomon/base/progress.h"
 #include "gnomon/cl/context.h"

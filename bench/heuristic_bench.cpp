@@ -29,7 +29,7 @@ struct Box {
   gnomon::Vec3d hi{-1e300, -1e300, -1e300};
 };
 
-Box bounds_of(const gnomon::Scene& scene) {
+Box box_of(const gnomon::Scene& scene) {
   Box box;
   for (const gnomon::Triangle& t : scene.triangles) {
     for (const float* v : {t.v0, t.v1, t.v2}) {
@@ -92,7 +92,7 @@ void run(const gnomon::cl::Context& context, const std::string& name, std::uint6
   const auto build = [&](const gnomon::BuildOptions& options) {
     static_cast<void>(gnomon::build_device(context, scene.triangles, options));
   };
-  for (const auto& [measure_name, measure] : measures_for(bounds_of(scene))) {
+  for (const auto& [measure_name, measure] : measures_for(box_of(scene))) {
     gnomon::BuildOptions options;
     options.measure = measure;
     const auto times = gnomon::bench::measure(

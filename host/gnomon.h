@@ -5,6 +5,7 @@
 #include "gnomon/areas/area_rays.h"
 #include "gnomon/areas/areas_from_scene.h"
 #include "gnomon/areas/influence_area.h"
+#include "gnomon/areas/measure.h"
 #include "gnomon/areas/membership.h"
 #include "gnomon/areas/projection.h"
 #include "gnomon/base/error.h"

@@ -137,7 +137,7 @@ static inline GnNodeView view_of(const GnTask* task, GnBinning binning) {
 }
 
 // The cheapest split of all three axes, each swept by a work-item of its own where there are several.
-static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int precise, const GnNodeView* node,
+static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, const GnNodeView* node,
                                      __local const GnBin* bins, __local const uint* counts,
                                      __local GnSplit* best_of_axis) {
   GnSplit best;
@@ -149,7 +149,7 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int precise, 
 #endif
     GnSplit split = gn_no_split();
     if ((node->usable >> axis & 1u) != 0u) {
-      split = gn_sweep_axis(&heuristic->measure, precise, bins + axis * GN_BINS, counts + axis * GN_BINS, GN_PLANES,
+      split = gn_sweep_axis(&heuristic->measure, how, bins + axis * GN_BINS, counts + axis * GN_BINS, GN_PLANES,
                             GN_BINS, axis, node->count);
     }
     best_of_axis[axis] = split;
@@ -164,14 +164,14 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int precise, 
 }
 
 // The split the heuristic chooses; every work-item receives it.
-static inline GnSplit choose_split(const GnHeuristic* heuristic, int precise, const GnNodeView* node,
+static inline GnSplit choose_split(const GnHeuristic* heuristic, int how, const GnNodeView* node,
                                    __local const GnBin* bins, __local const uint* counts,
                                    __local GnSplit* best_of_axis) {
 #if GN_AXES == GN_AXES_ALL
-  return cheapest_split(heuristic, precise, node, bins, counts, best_of_axis);
+  return cheapest_split(heuristic, how, node, bins, counts, best_of_axis);
 #else
   if (GN_LOCAL_ID == 0u) {
-    best_of_axis[0] = gn_policy_split(heuristic, precise, node, bins, counts, GN_PLANES, GN_BINS);
+    best_of_axis[0] = gn_policy_split(heuristic, how, node, bins, counts, GN_PLANES, GN_BINS);
   }
   GN_GROUP_BARRIER();
   return best_of_axis[0];

@@ -68,7 +68,7 @@ __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __gl
   const GnNodeView node = view_of(&task, binning_of(&task, triangles));
   GnSplit split;
   merge_chunks(chunk_bins, chunk_counts, from, to, bins, counts);
-  split = choose_split(&heuristic, gn_measure_is_precise(&heuristic.measure, task.lo, task.hi), &node, bins, counts,
+  split = choose_split(&heuristic, gn_measure_how(&heuristic.measure, task.lo, task.hi), &node, bins, counts,
                        best_of_axis);
   if (GN_LOCAL_ID == 0u) {
     const int halve = split.axis == GN_NONE || task.depth >= heuristic.rules.median_depth;

@@ -32,9 +32,9 @@ static inline void write_node(__global GnNode* node, const GnTask* task, uint fi
 }
 
 // Enters the split into the task, or marks it a leaf by left_count == 0.
-static inline void decide(GnTask* task, const GnHeuristic* heuristic, int precise, const GnNodeView* node,
+static inline void decide(GnTask* task, const GnHeuristic* heuristic, int how, const GnNodeView* node,
                           const GnSplit* split) {
-  const int leaf = gn_becomes_leaf(heuristic, precise, node, split);
+  const int leaf = gn_becomes_leaf(heuristic, how, node, split);
   task->axis = split->axis;
   task->plane = split->plane;
   task->left_count = leaf ? 0u : split->axis == GN_NONE ? node->count / 2u : split->left_count;
@@ -73,7 +73,7 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
     __global float8* to = task.buffer == 0u ? primitives1 : primitives0;
     const GnBinning binning = binning_of(&task, triangles);
     const GnNodeView node = view_of(&task, binning);
-    const int precise = gn_measure_is_precise(&heuristic.measure, task.lo, task.hi);
+    const int how = gn_measure_how(&heuristic.measure, task.lo, task.hi);
     GnSplit split = gn_no_split();
     GN_GROUP_BARRIER();
 
@@ -82,14 +82,14 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
 #if GN_WGS == 1
     if (binned_end > task.begin) {
       bin_range(from, task.begin, binned_end, binning, bins, counts);
-      split = choose_split(&heuristic, precise, &node, bins, counts, best_of_axis);
+      split = choose_split(&heuristic, how, &node, bins, counts, best_of_axis);
     }
 #else
     bin_range(from, task.begin, binned_end, binning, bins, counts);
-    split = choose_split(&heuristic, precise, &node, bins, counts, best_of_axis);
+    split = choose_split(&heuristic, how, &node, bins, counts, best_of_axis);
     if (binned_end == task.begin) split = gn_no_split();
 #endif
-    decide(&task, &heuristic, precise, &node, &split);
+    decide(&task, &heuristic, how, &node, &split);
     const uint is_leaf = task.left_count == 0u ? 1u : 0u;
     const uint middle = task.begin + task.left_count;
     const uint halved = !is_leaf && task.axis == GN_NONE ? 1u : 0u;

@@ -122,19 +122,19 @@ GnNodeView view_of(const Builder& builder, const GnTask& task) {
   return node;
 }
 
-GnSplit choose_split(const Builder& builder, const GnNodeView& node, int precise, const GnTask& task) {
+GnSplit choose_split(const Builder& builder, const GnNodeView& node, int how, const GnTask& task) {
   GnSplit best = gn_no_split();
   if (node.count < 2 || task.depth >= builder.heuristic.rules.median_depth) return best;
   const std::uint32_t bins = builder.options.bins;
   const std::uint32_t planes = bins - 1 - (builder.options.published_leaves.on ? 1 : 0);
   const Bins binned = bins_of(builder, task, node.usable);
   if (builder.options.axes != AxisPolicy::kAll) {
-    return gn_policy_split(&builder.heuristic, precise, &node, binned.boxes.data(), binned.counts.data(),
+    return gn_policy_split(&builder.heuristic, how, &node, binned.boxes.data(), binned.counts.data(),
                            planes, bins);
   }
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     if ((node.usable >> axis & 1U) == 0) continue;
-    const GnSplit split = gn_sweep_axis(&builder.heuristic.measure, precise, &binned.boxes[axis * bins],
+    const GnSplit split = gn_sweep_axis(&builder.heuristic.measure, how, &binned.boxes[axis * bins],
                                         &binned.counts[axis * bins], planes, bins, axis, node.count);
     if (split.axis != GN_NONE && (best.axis == GN_NONE || gn_split_is_better(&split, &best, node.count)))
       best = split;
@@ -171,12 +171,12 @@ GnTask task_of(std::uint32_t begin, std::uint32_t end, std::uint32_t slot, std::
 
 void build_node(Builder& builder, const GnTask& task) {
   const GnNodeView view = view_of(builder, task);
-  const int precise = gn_measure_is_precise(&builder.heuristic.measure, task.lo, task.hi);
-  const GnSplit split = choose_split(builder, view, precise, task);
+  const int how = gn_measure_how(&builder.heuristic.measure, task.lo, task.hi);
+  const GnSplit split = choose_split(builder, view, how, task);
   Node node{};
   std::copy_n(task.lo, 3, node.lo);
   std::copy_n(task.hi, 3, node.hi);
-  if (gn_becomes_leaf(&builder.heuristic, precise, &view, &split) != 0) {
+  if (gn_becomes_leaf(&builder.heuristic, how, &view, &split) != 0) {
     node.first = task.begin;
     node.count = task.end - task.begin;
   } else {

@@ -57,22 +57,22 @@ GN_INLINE gn_u32 gn_next_axis(const gn_f32* quality, gn_u32 tried) {
 
 // What surface area rates as the best plane of an axis. Published: with probabilities by surface area, whatever the
 // metric. Repaired: rated by the metric.
-GN_INLINE GnSplit gn_fallback_split(const GnHeuristic* h, int precise, GN_BINS_SPACE const GnBin* bins,
+GN_INLINE GnSplit gn_fallback_split(const GnHeuristic* h, int how, GN_BINS_SPACE const GnBin* bins,
                                     GN_BINS_SPACE const gn_u32* counts, gn_u32 plane_count, gn_u32 bin_count,
                                     gn_u32 axis, gn_u32 count) {
   GnSplit split = gn_sweep_axis(&h->surface, 0, bins, counts, plane_count, bin_count, axis, count);
-  if (split.axis != GN_NONE && h->rules.repaired) gn_rate_split(&h->measure, precise, bins, counts, bin_count, count, &split);
+  if (split.axis != GN_NONE && h->rules.repaired) gn_rate_split(&h->measure, how, bins, counts, bin_count, count, &split);
   return split;
 }
 
 // The split that the policy of `h` chooses; bins and counts hold all three axes, bin_count of each.
-GN_INLINE GnSplit gn_policy_split(const GnHeuristic* h, int precise, const GnNodeView* node,
+GN_INLINE GnSplit gn_policy_split(const GnHeuristic* h, int how, const GnNodeView* node,
                                   GN_BINS_SPACE const GnBin* bins, GN_BINS_SPACE const gn_u32* counts,
                                   gn_u32 plane_count, gn_u32 bin_count) {
   const GnRules* rules = &h->rules;
   const int only_surface = node->depth >= rules->max_metric_depth;
   const gn_u32 policy = only_surface ? GN_AXES_LSPH : rules->axes;
-  const gn_f32 father = rules->repaired ? gn_box_measure(&h->measure, precise, node->lo, node->hi) : node->probability;
+  const gn_f32 father = rules->repaired ? gn_box_measure(&h->measure, how, node->lo, node->hi) : node->probability;
   GnSplit best = gn_no_split();
   gn_f32 quality[3];
   gn_u32 tried = 0u, last = GN_NONE, turn;
@@ -93,10 +93,10 @@ GN_INLINE GnSplit gn_policy_split(const GnHeuristic* h, int precise, const GnNod
       continue;
     }
     if (poor || only_surface) {
-      split = gn_fallback_split(h, precise, bins + axis * bin_count, counts + axis * bin_count, plane_count, bin_count,
+      split = gn_fallback_split(h, how, bins + axis * bin_count, counts + axis * bin_count, plane_count, bin_count,
                                 axis, node->count);
     } else {
-      split = gn_sweep_axis(&h->measure, precise, bins + axis * bin_count, counts + axis * bin_count, plane_count,
+      split = gn_sweep_axis(&h->measure, how, bins + axis * bin_count, counts + axis * bin_count, plane_count,
                             bin_count, axis, node->count);
     }
     // Published: an earlier split, however good, is forgotten when the fallback is reached; one that was found remains
@@ -114,7 +114,7 @@ GN_INLINE GnSplit gn_policy_split(const GnHeuristic* h, int precise, const GnNod
 }
 
 // Whether a node is a leaf. split is what the policy found for it, probability and depth the node's own.
-GN_INLINE int gn_becomes_leaf(const GnHeuristic* h, int precise, const GnNodeView* node, const GnSplit* split) {
+GN_INLINE int gn_becomes_leaf(const GnHeuristic* h, int how, const GnNodeView* node, const GnSplit* split) {
   const GnRules* rules = &h->rules;
   if (rules->leaf_rule == GN_LEAF_PUBLISHED) {
     const gn_f32 cost = node->probability * (gn_f32)node->count * rules->cost_triangle;
@@ -126,7 +126,7 @@ GN_INLINE int gn_becomes_leaf(const GnHeuristic* h, int precise, const GnNodeVie
   }
   if (node->count > rules->max_leaf_size) return 0;
   if (node->count == 1u) return 1;
-  return gn_leaf_is_better(split, gn_box_measure(&h->measure, precise, node->lo, node->hi), node->count,
+  return gn_leaf_is_better(split, gn_box_measure(&h->measure, how, node->lo, node->hi), node->count,
                            rules->cost_traversal, rules->cost_triangle);
 }
 

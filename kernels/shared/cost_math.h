@@ -66,7 +66,7 @@ GN_INLINE GnSplit gn_no_split(void) {
 
 // Best plane of one axis: bins [0, plane] go left, plane < plane_count. cost is measure(L) n_L + measure(R) n_R, without
 // constants. axis == GN_NONE when all centroids share a side of every plane. bins and counts are the axis' own.
-GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int precise, GN_BINS_SPACE const GnBin* bins,
+GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int how, GN_BINS_SPACE const GnBin* bins,
                                 GN_BINS_SPACE const gn_u32* counts, gn_u32 plane_count, gn_u32 bin_count,
                                 gn_u32 axis, gn_u32 count) {
   gn_f32 right_cost[GN_MAX_BINS], right_measure[GN_MAX_BINS], right_tie[GN_MAX_BINS];
@@ -78,7 +78,7 @@ GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int precise, GN_BINS_S
     if (counts[i] > 0u) {
       gn_grow_box(lo, hi, &bins[i]);
       seen += counts[i];
-      area = gn_box_measure(measure, precise, lo, hi);
+      area = gn_box_measure(measure, how, lo, hi);
       cost = area * (gn_f32)seen;
       if (measure->breaks_ties) tie = gn_surface_measure(lo, hi) * (gn_f32)seen;
     }
@@ -94,7 +94,7 @@ GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int precise, GN_BINS_S
     seen += counts[i];
     if (seen < count) {
       GnSplit candidate = {0.0f, axis, i, seen, 0.0f, 0.0f, right_measure[i + 1u], 0u};
-      candidate.left_measure = gn_box_measure(measure, precise, lo, hi);
+      candidate.left_measure = gn_box_measure(measure, how, lo, hi);
       candidate.cost = candidate.left_measure * (gn_f32)seen + right_cost[i + 1u];
       if (measure->breaks_ties) candidate.tie = gn_surface_measure(lo, hi) * (gn_f32)seen + right_tie[i + 1u];
       if (best.axis == GN_NONE || gn_split_is_better(&candidate, &best, count)) best = candidate;
@@ -104,7 +104,7 @@ GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int precise, GN_BINS_S
 }
 
 // Rates a split found by other means with this measure: its cost and its sides' measures.
-GN_INLINE void gn_rate_split(const GnMeasure* measure, int precise, GN_BINS_SPACE const GnBin* bins,
+GN_INLINE void gn_rate_split(const GnMeasure* measure, int how, GN_BINS_SPACE const GnBin* bins,
                              GN_BINS_SPACE const gn_u32* counts, gn_u32 bin_count, gn_u32 count, GnSplit* split) {
   gn_f32 lo[3], hi[3];
   gn_u32 i;
@@ -112,12 +112,12 @@ GN_INLINE void gn_rate_split(const GnMeasure* measure, int precise, GN_BINS_SPAC
   for (i = 0u; i <= split->plane; ++i) {
     if (counts[i] > 0u) gn_grow_box(lo, hi, &bins[i]);
   }
-  split->left_measure = gn_box_measure(measure, precise, lo, hi);
+  split->left_measure = gn_box_measure(measure, how, lo, hi);
   gn_empty_box(lo, hi);
   for (i = split->plane + 1u; i < bin_count; ++i) {
     if (counts[i] > 0u) gn_grow_box(lo, hi, &bins[i]);
   }
-  split->right_measure = gn_box_measure(measure, precise, lo, hi);
+  split->right_measure = gn_box_measure(measure, how, lo, hi);
   split->cost = split->left_measure * (gn_f32)split->left_count +
                 split->right_measure * (gn_f32)(count - split->left_count);
 }
@@ -142,7 +142,7 @@ GN_INLINE void gn_settle_heuristic(GnHeuristic* h, const gn_f32* lo, const gn_f3
   h->surface.breaks_ties = 0u;
   for (k = 0; k < 3; ++k) h->surface.weights[k] = scale;
   if (share < 1.0f) {
-    const gn_f32 whole = gn_box_measure(&h->measure, gn_measure_is_precise(&h->measure, lo, hi), lo, hi);
+    const gn_f32 whole = gn_box_measure(&h->measure, gn_measure_how(&h->measure, lo, hi), lo, hi);
     const gn_f32 area_scale = whole > 1e-30f ? share * gn_reciprocal(whole) : 0.0f;
     for (k = 0; k < 3; ++k) h->measure.weights[k] = h->measure.weights[k] * area_scale + (1.0f - share) * scale;
     h->measure.area_scale *= area_scale;

@@ -32,18 +32,19 @@ GN_INLINE gn_f32 gn_surface_measure(const gn_f32* lo, const gn_f32* hi) {
 #define GN_LINEAR_ONLY 0
 #endif
 
-// Whether the parts of a node with this box must be measured precisely.
-GN_INLINE int gn_measure_is_precise(const GnMeasure* measure, const gn_f32* lo, const gn_f32* hi) {
-  return !GN_LINEAR_ONLY && measure->kind != GN_MEASURE_CUSTOM && gn_needs_precise(measure, lo, hi);
+// How the parts of a node with this box are to be measured (GN_SEEN_*).
+GN_INLINE int gn_measure_how(const GnMeasure* measure, const gn_f32* lo, const gn_f32* hi) {
+  if (GN_LINEAR_ONLY || measure->kind == GN_MEASURE_LINEAR || measure->kind == GN_MEASURE_CUSTOM) return 0;
+  return gn_seen_how(measure, lo, hi);
 }
 
-// The heuristic seam: what a builder minimises. precise: gn_measure_is_precise of the node whose parts are measured, so that
+// The heuristic seam: what a builder minimises. how: gn_measure_how of the node whose parts are measured, so that
 // all its candidates are compared by one formula.
-GN_INLINE gn_f32 gn_box_measure(const GnMeasure* measure, int precise, const gn_f32* lo, const gn_f32* hi) {
+GN_INLINE gn_f32 gn_box_measure(const GnMeasure* measure, int how, const gn_f32* lo, const gn_f32* hi) {
   if (GN_LINEAR_ONLY || measure->kind == GN_MEASURE_LINEAR) return gn_linear_measure(measure->weights, lo, hi);
   {
     const gn_f32 seen = measure->kind == GN_MEASURE_CUSTOM ? gn_custom_measure(measure, lo, hi)
-                                                           : gn_seen_measure(measure, precise, lo, hi);
+                                                           : gn_seen_measure(measure, how, lo, hi);
     return measure->area_scale * seen + gn_linear_measure(measure->weights, lo, hi);
   }
 }

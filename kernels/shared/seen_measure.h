@@ -8,8 +8,8 @@
 #include "build_layout.h"
 #include "polygon_math.h"
 
-// A box counts as small when its diagonal is below 1/8 of its distance: the one-step measures are then right within 1 %.
-#define GN_SMALL_SEEN 0.015625f  // (1/8)^2
+// A box counts as small when its diagonal is below 1/10 of its distance: the one-step measures are then right within 1 %.
+#define GN_SMALL_SEEN 0.01f  // (1/10)^2
 
 // Four of a box's corners, one face, in the area's frame and in units of `unit`.
 GN_INLINE void gn_face_polygon(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi, gn_u32 axis, gn_f32 at,
@@ -59,22 +59,33 @@ GN_INLINE void gn_yaw_pitch(const gn_f32* p, gn_f32* yaw, gn_f32* pitch) {
   *pitch = p[1] < 0.0f ? -to_top : to_top;
 }
 
+// Mean of min(x, limit) over x from a to b.
+GN_INLINE gn_f32 gn_mean_below(gn_f32 a, gn_f32 b, gn_f32 limit) {
+  const gn_f32 low = gn_min(a, b), high = gn_max(a, b);
+  if (high <= limit || high - low < 1e-30f) return gn_min(0.5f * (a + b), limit);
+  if (low >= limit) return limit;
+  return limit - 0.5f * (limit - low) * (limit - low) * gn_reciprocal(high - low);
+}
+
+// Mean of x from a to b, clamped to [-limit, limit].
+GN_INLINE gn_f32 gn_mean_clamped(gn_f32 a, gn_f32 b, gn_f32 limit) {
+  return gn_mean_below(a, b, limit) - gn_mean_below(-a, -b, limit) - 0.5f * (a + b);
+}
+
 // Area in yaw and pitch between one side of the polygon and pitch 0, pitch clamped to the window: summed over all sides
-// this is the polygon's area inside the window. A side is a curve there: it is taken in eight steps.
+// this is the polygon's area inside the window. A side is a curve there: it is taken in sixteen steps, right within 1 %.
 GN_INLINE gn_f32 gn_side_yaw_pitch(const GnMeasure* m, const gn_f32* from, const gn_f32* to) {
   gn_f32 sum = 0.0f, yaw_a, pitch_a;
   gn_u32 step;
   gn_yaw_pitch(from, &yaw_a, &pitch_a);
-  pitch_a = gn_max(gn_min(pitch_a, m->half_pitch), -m->half_pitch);
-  for (step = 1u; step <= 8u; ++step) {
-    const gn_f32 t = 0.125f * (gn_f32)step;
+  for (step = 1u; step <= 16u; ++step) {
+    const gn_f32 t = 0.0625f * (gn_f32)step;
     gn_f32 p[3], yaw_b, pitch_b;
     p[0] = from[0] + t * (to[0] - from[0]);
     p[1] = from[1] + t * (to[1] - from[1]);
     p[2] = from[2] + t * (to[2] - from[2]);
     gn_yaw_pitch(p, &yaw_b, &pitch_b);
-    pitch_b = gn_max(gn_min(pitch_b, m->half_pitch), -m->half_pitch);
-    sum += 0.5f * (pitch_a + pitch_b) * (yaw_b - yaw_a);
+    sum += gn_mean_clamped(pitch_a, pitch_b, m->half_pitch) * (yaw_b - yaw_a);
     yaw_a = yaw_b;
     pitch_a = pitch_b;
   }
@@ -124,7 +135,8 @@ GN_INLINE gn_f32 gn_precise_measure(const GnMeasure* m, const gn_f32* lo, const 
   return sum;
 }
 
-// The one-step measure: the box's area as seen along the ray through its middle.
+// The one-step measure: the box's area as seen along the ray through its middle. Faces on both sides of an axis average to
+// |p_k| where the eye is beyond them, and to half the size where it is between them.
 GN_INLINE gn_f32 gn_small_measure(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi) {
   const gn_f32 dx = hi[0] - lo[0], dy = hi[1] - lo[1], dz = hi[2] - lo[2];
   gn_f32 p[3], area, inverse, level;
@@ -136,19 +148,53 @@ GN_INLINE gn_f32 gn_small_measure(const GnMeasure* m, const gn_f32* lo, const gn
   }
   inverse = m->kind == GN_MEASURE_NEAR_PLANE ? gn_reciprocal(gn_max(gn_dot(p, m->forward), 1e-30f))
                                              : gn_reciprocal_root(gn_max(gn_dot(p, p), 1e-30f));
-  p[0] *= inverse;
-  p[1] *= inverse;
-  p[2] *= inverse;
-  area = (gn_abs(p[0]) * dy * dz + dx * (gn_abs(p[1]) * dz + gn_abs(p[2]) * dy)) * inverse * inverse;
+  level = gn_dot(p, m->up) * inverse;
+  p[0] = gn_max(gn_abs(p[0]), 0.5f * dx) * inverse;
+  p[1] = gn_max(gn_abs(p[1]), 0.5f * dy) * inverse;
+  p[2] = gn_max(gn_abs(p[2]), 0.5f * dz) * inverse;
+  area = (p[0] * dy * dz + dx * (p[1] * dz + p[2] * dy)) * inverse * inverse;
   if (m->kind != GN_MEASURE_YAW_PITCH) return area;
   // dyaw dpitch = solid angle / cos(pitch)
-  level = gn_dot(p, m->up);
   return area * gn_reciprocal_root(gn_max(1.0f - level * level, 1e-12f));
 }
 
-// Whether the boxes of a node must be measured precisely: it is large as seen from the eye, or not all of it is inside
+// The square of the distance that the density of rays depends on: from the eye, along forward, or from the up axis.
+GN_INLINE gn_f32 gn_seen_distance_square(const GnMeasure* m, const gn_f32* p) {
+  const gn_f32 along = gn_dot(p, m->forward), above = gn_dot(p, m->up);
+  if (m->kind == GN_MEASURE_NEAR_PLANE) return along * along;
+  return gn_dot(p, p) - (m->kind == GN_MEASURE_YAW_PITCH ? above * above : 0.0f);
+}
+
+// Whether no ray can meet the box: all of it lies beyond one side of the window, or behind where rays begin. centre is
+// seen from the origin.
+GN_INLINE int gn_is_out_of_sight(const GnMeasure* m, const gn_f32* centre, const gn_f32* half_size) {
+  const int parallel = m->kind == GN_MEASURE_WINDOW;
+  gn_u32 side, k;
+  if (!m->culled) return 0;
+  for (side = 0u; side < 5u; ++side) {
+    const int across = side < 2u, begins = side == 4u;
+    const gn_f32 sign = side % 2u == 0u ? 1.0f : -1.0f;
+    const gn_f32 window = across ? m->half_width : m->half_height;
+    gn_f32 distance = begins ? m->near_distance : parallel ? -window : 0.0f, reach = 0.0f;
+    if (m->kind == GN_MEASURE_YAW_PITCH && !across && !begins) continue;  // these sides are cones
+    for (k = 0u; k < 3u; ++k) {
+      const gn_f32 outwards = begins ? -m->forward[k]
+                                     : sign * (across ? m->right[k] : m->up[k]) - (parallel ? 0.0f : window * m->forward[k]);
+      distance += outwards * centre[k];
+      reach += gn_abs(outwards) * half_size[k];
+    }
+    if (distance > reach) return 1;
+  }
+  return 0;
+}
+
+#define GN_SEEN_ONE_STEP 0
+#define GN_SEEN_PRECISE 1
+#define GN_SEEN_NOTHING 2
+
+// How the boxes of a node must be measured: precisely where it is large as seen from the eye, or not all of it is inside
 // the window and ahead of where rays begin.
-GN_INLINE int gn_needs_precise(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi) {
+GN_INLINE int gn_seen_how(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi) {
   gn_f32 centre[3], half_size[3], at[3], reach[3];
   gn_u32 k;
   if (m->kind == GN_MEASURE_LINEAR) return 0;
@@ -156,7 +202,11 @@ GN_INLINE int gn_needs_precise(const GnMeasure* m, const gn_f32* lo, const gn_f3
     centre[k] = 0.5f * (lo[k] + hi[k]) - m->origin[k];
     half_size[k] = 0.5f * (hi[k] - lo[k]);
   }
-  if (m->kind != GN_MEASURE_WINDOW && !(4.0f * gn_dot(half_size, half_size) < GN_SMALL_SEEN * gn_dot(centre, centre))) return 1;
+  if (gn_is_out_of_sight(m, centre, half_size)) return GN_SEEN_NOTHING;
+  if (m->kind != GN_MEASURE_WINDOW &&
+      !(4.0f * gn_dot(half_size, half_size) < GN_SMALL_SEEN * gn_seen_distance_square(m, centre))) {
+    return 1;
+  }
   if (m->kind == GN_MEASURE_SOLID_ANGLE && !m->culled) return 0;
   at[0] = gn_dot(centre, m->right);
   at[1] = gn_dot(centre, m->up);
@@ -172,8 +222,9 @@ GN_INLINE int gn_needs_precise(const GnMeasure* m, const gn_f32* lo, const gn_f3
   }
 }
 
-GN_INLINE gn_f32 gn_seen_measure(const GnMeasure* m, int precise, const gn_f32* lo, const gn_f32* hi) {
-  return precise ? gn_precise_measure(m, lo, hi) : gn_small_measure(m, lo, hi);
+GN_INLINE gn_f32 gn_seen_measure(const GnMeasure* m, int how, const gn_f32* lo, const gn_f32* hi) {
+  if (how == GN_SEEN_NOTHING) return 0.0f;
+  return how == GN_SEEN_PRECISE ? gn_precise_measure(m, lo, hi) : gn_small_measure(m, lo, hi);
 }
 
 #endif

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 
+#include "gnomon/areas/grown_area.h"
 #include "gnomon/areas/shared_area.h"
 
 namespace gnomon {
@@ -64,6 +65,24 @@ ForestTree add_tree(const cl::Context& context, std::span<const Triangle> triang
   return assembly.append(download_bvh(context, tree), names, tree.max_depth);
 }
 
+// The region whose triangles the local tree holds and in which rays may ask it.
+InfluenceArea grown_of(const LocalTree& wanted) {
+  if (!(wanted.growth >= 0.0 && wanted.growth <= 1.0)) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "growth = " + std::to_string(wanted.growth) + " is outside its range 0..1");
+  }
+  const Box3d box = wanted.area.enclosing_box();
+  return grown_by(wanted.area, wanted.growth * larger(magnitude(box.lo), magnitude(box.hi)));
+}
+
+GnArea shared_of(const LocalTree& wanted, const InfluenceArea& grown, const ForestTree& tree) {
+  GnArea shared = to_shared(grown, wanted.affinity_tolerance);
+  // The rays' own eye, not the one that growing moved back.
+  std::copy_n(to_shared(wanted.area).focus, 3, shared.focus);
+  shared.root = tree.root;
+  return shared;
+}
+
 }  // namespace
 
 std::uint32_t DeviceForest::max_depth() const {
@@ -95,15 +114,13 @@ DeviceForest build_forest(const cl::Context& context, std::span<const Triangle> 
     report(progress, "forest: local trees",
            static_cast<double>(forest.local.size() + 1) / static_cast<double>(local_trees.size() + 1));
     const auto before = std::chrono::steady_clock::now();
-    const std::vector<std::uint32_t> names = members(wanted.area, triangles, wanted.membership);
+    forest.areas.push_back(grown_of(wanted));
+    const std::vector<std::uint32_t> names = members(forest.areas.back(), triangles, wanted.membership);
     times.members_ms.push_back(ms_since(before));
     const auto between = std::chrono::steady_clock::now();
     forest.local.push_back(add_tree(context, triangles, &names, wanted.options, assembly));
     times.local_ms.push_back(ms_since(between));
-    GnArea shared = to_shared(wanted.area, wanted.affinity_tolerance);
-    shared.root = forest.local.back().root;
-    forest.shared_areas.push_back(shared);
-    forest.areas.push_back(wanted.area);
+    forest.shared_areas.push_back(shared_of(wanted, forest.areas.back(), forest.local.back()));
   }
   forest.triangles = context.create_buffer("triangles", triangles.size_bytes());
   forest.nodes = context.create_buffer("forest_nodes", assembly.nodes.size() * sizeof(Node));

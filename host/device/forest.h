@@ -22,6 +22,10 @@ struct LocalTree {
   // Anything but kExact loses triangles and gives wrong answers under every rule: for experiments.
   Membership membership = Membership::kExact;
   double affinity_tolerance = 0.01;  // see InfluenceArea::is_affine; 1: rays of every direction
+  // How far the region is grown on all sides before anything else, as a share of its largest coordinate. By
+  // the default rays that start exactly in a window, in a face or in the eye of a view whose near_distance is
+  // less still than that, are served; by 0 they go to the global tree, as rounding cannot tell their side.
+  double growth = 0x1p-16;
 };
 
 // One tree of a forest: where it stands in the shared buffers.
@@ -41,7 +45,7 @@ struct DeviceForest {
   cl::Buffer order;      // uint32: the trees' leaf orders, as indices of triangles
   ForestTree global;
   std::vector<ForestTree> local;     // one per area
-  std::vector<InfluenceArea> areas;  // in the caller's order
+  std::vector<InfluenceArea> areas;  // in the caller's order, grown: what a top level is built over
   std::vector<GnArea> shared_areas;  // the same as kernels read them, with their trees' roots
   std::uint32_t triangle_count = 0;
   [[nodiscard]] std::uint32_t max_depth() const;

@@ -62,6 +62,18 @@ TEST_CASE("a ray that ends where it leaves, before or behind, is asked the right
   REQUIRE(outcome_of(ray({0, 0, 0.25F}, {0, 1, 1})) == GN_OUTCOME_GLOBAL);  // not affine
 }
 
+TEST_CASE("triangles between the region and the grown one belong to the local tree") {
+  const InfluenceArea area = InfluenceArea::plane(PlaneWindow{});  // z from 0 to 1
+  const float beyond = 1.0F + 0x1p-18F;
+  const std::vector<GnTriangle> triangles = {
+      triangle({-9, -9, 3}, {9, -9, 3}, {0, 18, 3}),
+      triangle({-0.1F, -0.1F, beyond}, {0.1F, -0.1F, beyond}, {0, 0.2F, beyond})};
+  const Rig rig(triangles, local_trees_of({area}));
+  REQUIRE(rig.forest().local[0].triangle_count == 1);
+  const Tally tally = rig.require_same_answers({ray({0, 0, 0.5F}, {0, 0, 1})});
+  REQUIRE(tally.outcomes[GN_OUTCOME_LOCAL] == 1);
+}
+
 namespace {
 
 // Wrong hits of the published rule over areas of a scene, for each rule of membership; the exit rule has

@@ -65,6 +65,60 @@ TEST_CASE("rays of every direction through areas of every shape get the global t
   REQUIRE(alone.outcomes[GN_OUTCOME_LOCAL] > 100);
 }
 
+namespace {
+
+// Large triangles just outside each face, from 2^-12 to 2^-26 of the region's size away: none belongs to the
+// region, and a ray that is followed by as little too far misses the first.
+std::vector<GnTriangle> layers_around(const InfluenceArea& area, Source& source) {
+  const Box3d box = area.enclosing_box();
+  const double size = larger(magnitude(box.lo), magnitude(box.hi));
+  std::vector<Plane> faces(area.planes().begin(), area.planes().end());
+  const auto* ball = std::get_if<Ball>(&area.region());
+  for (int i = 0; ball != nullptr && i < 12; ++i) {
+    const Vec3d inwards = source.direction();
+    faces.push_back(plane_through(ball->centre - ball->radius * inwards, inwards));
+  }
+  std::vector<GnTriangle> layers;
+  for (const Plane& face : faces) {
+    const AreaFrame frame = look_along({0, 0, 0}, face.normal, kWorldUp);
+    for (int k = 12; k <= 26; ++k) {
+      const Vec3d inside = place_in(area, source.point(-0.5, 0.5));
+      const double away = signed_distance(face, inside) + std::exp2(-k) * size;
+      const Vec3d centre = inside - away * face.normal;
+      GnTriangle t{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        t.v0[axis] = static_cast<float>(centre[axis] - size * (frame.right[axis] + frame.up[axis]));
+        t.v1[axis] = static_cast<float>(centre[axis] + size * (2.0 * frame.right[axis] - frame.up[axis]));
+        t.v2[axis] = static_cast<float>(centre[axis] + size * (2.0 * frame.up[axis] - frame.right[axis]));
+      }
+      layers.push_back(t);
+    }
+  }
+  return layers;
+}
+
+}  // namespace
+
+TEST_CASE("triangles a rounding outside the faces are found by every ray that leaves through them",
+          "[portable]") {
+  Source source(152);
+  Tally sum;
+  for (const auto& [name, area] : areas_of_every_kind({3, -2, 1})) {
+    if (name == "plane, class" && source.between(0.0, 1.0) < 0.7) continue;
+    CAPTURE(name);
+    const std::vector<GnTriangle> triangles = layers_around(area, source);
+    for (const double growth : {0.0, 0x1p-16}) {
+      CAPTURE(growth);
+      std::vector<LocalTree> trees = local_trees_of({area}, 1.0);
+      trees[0].growth = growth;
+      const Tally tally = Rig(triangles, trees).require_same_answers(all_rays({area}, 200, 153));
+      for (int k = 0; k < 4; ++k) sum.outcomes[k] += tally.outcomes[k];
+    }
+  }
+  REQUIRE(sum.outcomes[GN_OUTCOME_FALLBACK] > 1000);
+  REQUIRE(sum.outcomes[GN_OUTCOME_LOCAL] > 500);
+}
+
 TEST_CASE("overlapping, nested, touching and repeated areas, some outside the scene or empty", "[portable]") {
   const std::vector<GnTriangle> triangles = soup(300, 136, 1.0F);
   std::vector<InfluenceArea> areas;

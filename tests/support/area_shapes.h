@@ -83,11 +83,15 @@ inline GnRay ray_through(const Vec3d& start, const Vec3d& direction, double back
   return r;
 }
 
-// For an area: starts near its faces, directions of all kinds, one ray in four with its tmin far off.
+// For an area: starts near its faces, directions of all kinds and lengths, one ray in four with its tmin far
+// off.
 inline GnRay ray_near(const InfluenceArea& area, Source& source) {
   const Vec3d start = start_near(area, source);
   const double back = source.between(0.0, 4.0) < 1.0 ? std::exp2(source.between(-6.0, 12.0)) : 0.0;
-  return ray_through(start, direction_for(area, start, source), back);
+  // Half of the directions are shorter or longer than 1.
+  const double stretch =
+      std::exp2(larger(source.between(-6.0, 6.0), 0.0) - larger(source.between(-6.0, 6.0), 0.0));
+  return ray_through(start, stretch * direction_for(area, start, source), back);
 }
 
 inline Vec3d point_at(const GnRay& r, double t) {

@@ -2,6 +2,7 @@
 // contracted nor flushed where trees are decided.
 #include "shared/hit_math.h"
 #include "shared/cost_math.h"
+#include "shared/area_math.h"
 
 // From a real address: a null pointer need not have the bits of zero.
 #define GN_OFFSET(type, member) \
@@ -26,6 +27,14 @@ __kernel void probe_layout(__global uint* out) {
   out[15] = GN_OFFSET(GnTask, buffer);
   out[16] = GN_HAS_FP64;
   out[17] = sizeof(GnWalk);
+  out[18] = sizeof(GnArea);
+  out[19] = sizeof(GnAreaBox);
+  out[20] = sizeof(GnAreaCell);
+  out[21] = sizeof(GnAreaCounters);
+  out[22] = sizeof(GnAreaWalk);
+  out[23] = GN_OFFSET(GnArea, kind);
+  out[24] = GN_OFFSET(GnArea, root);
+  out[25] = GN_OFFSET(GnAreaWalk, exit);
 }
 
 // x[i] y[i] z[i] -> products and sums that would differ were they fused, the division-free reciprocal, and bins.
@@ -54,4 +63,16 @@ __kernel void probe_hits(__global const GnRay* rays, __global const GnTriangle* 
   if (gn_triangle_hit(&frame, triangle.v0, triangle.v1, triangle.v2, &hit)) hit.primitive = (uint)i;
   hits[i] = hit;
   entries[i] = gn_box_entry(&frame, lo, hi, ray.tmin, gn_slab_limit(ray.tmax));
+}
+
+// Whether rays start in areas, are meant for them and where they leave, in pairs.
+__kernel void probe_areas(__global const GnRay* rays, __global const GnArea* areas, __global uint* contains,
+                          __global uint* affine, __global float* exits) {
+  const size_t i = get_global_id(0);
+  const GnRay ray = rays[i];
+  const GnArea area = areas[i];
+  const GnRayStart start = gn_ray_start(&ray);
+  contains[i] = gn_area_contains(&area, &start) ? 1u : 0u;
+  affine[i] = gn_area_is_affine(&area, &start) ? 1u : 0u;
+  exits[i] = contains[i] ? gn_area_exit(&area, &start) : -INFINITY;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -34,11 +35,17 @@ struct TraceResult {
   double kernel_ms = 0.0;               // device time; 0 without profiling
 };
 
+struct Launch;  // ray_batches.h
+struct Passes;
+struct TracePlan;
+
 // Holds the kernels for one tree. The context and the tree must outlive it.
 class Tracer {
  public:
   // Throws Error: kDevice, kInvalidArgument.
   Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options = {});
+  Tracer(Tracer&&) noexcept;
+  ~Tracer();
 
   // Blocking. Throws Error: kOutOfMemory, kDevice, kCancelled.
   [[nodiscard]] TraceResult closest(std::span<const Ray> rays, const Progress& progress = {}) const;
@@ -56,26 +63,19 @@ class Tracer {
   [[nodiscard]] std::uint64_t invalid_rays() const;
 
  private:
-  struct Launch;
-  struct Passes;
-  [[nodiscard]] cl::Handle<cl_event> enqueue(const Launch& launch, std::span<const cl_event> wait_for) const;
-  [[nodiscard]] Passes make_passes(std::size_t rays) const;
-  [[nodiscard]] cl::Handle<cl_event> enqueue_pass(const Launch& launch, const Passes& passes,
-                                                  std::uint32_t pass,
+  [[nodiscard]] cl::Handle<cl_event> enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
+                                             const Passes& passes, std::uint32_t pass,
+                                             std::span<const cl_event> wait_for) const;
+  [[nodiscard]] cl::Handle<cl_event> enqueue_only(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                                   std::span<const cl_event> wait_for) const;
-  [[nodiscard]] cl::Handle<cl_event> enqueue_only(const Launch& launch,
-                                                  std::span<const cl_event> wait_for) const;
-  [[nodiscard]] std::uint32_t most_passes() const;
-  [[nodiscard]] double run(const Launch& launch, const Passes& passes) const;
   template <typename Answer>
-  void trace_all(const cl::Handle<cl_kernel>& kernel, std::span<const Ray> rays, std::vector<Answer>& answers,
-                 TraceResult& result, const Progress& progress) const;
+  [[nodiscard]] TraceResult trace_all(const cl::Handle<cl_kernel>& kernel, std::span<const Ray> rays,
+                                      std::vector<Answer> TraceResult::*answers,
+                                      const Progress& progress) const;
 
   const cl::Context& context_;
   const DeviceBvh& tree_;
-  TraceOptions options_;
-  std::uint32_t stack_size_ = 0;
-  std::uint32_t step_limit_ = 0;  // TraceOptions::step_limit, with the device's say
+  std::unique_ptr<TracePlan> plan_;
   cl::Handle<cl_kernel> closest_;
   cl::Handle<cl_kernel> any_;
   cl::Buffer invalid_;

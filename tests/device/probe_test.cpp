@@ -7,6 +7,7 @@
 
 #include "gnomon/cl/launch.h"
 #include "gnomon/cl/program.h"
+#include "gnomon/shared/area_math.h"
 #include "gnomon/shared/cost_math.h"
 #include "gnomon/shared/hit_math.h"
 #include "support/device.h"
@@ -35,7 +36,7 @@ cl::Buffer buffer_of(const char* name, const std::vector<T>& values) {
 }  // namespace
 
 TEST_CASE("the device lays out every shared struct as the host does", "[portable][memcheck]") {
-  const cl::Buffer out = context().create_buffer("layout", 18 * sizeof(std::uint32_t));
+  const cl::Buffer out = context().create_buffer("layout", 26 * sizeof(std::uint32_t));
   run("probe_layout", 1, out);
   const std::vector<std::uint32_t> expected = {sizeof(GnTriangle),
                                                sizeof(GnLeafTriangle),
@@ -54,8 +55,16 @@ TEST_CASE("the device lays out every shared struct as the host does", "[portable
                                                offsetof(GnRay, direction),
                                                offsetof(GnTask, buffer),
                                                context().device().fp64 ? 1U : 0U,
-                                               sizeof(GnWalk)};
-  REQUIRE(context().download_values<std::uint32_t>(out, 18) == expected);
+                                               sizeof(GnWalk),
+                                               sizeof(GnArea),
+                                               sizeof(GnAreaBox),
+                                               sizeof(GnAreaCell),
+                                               sizeof(GnAreaCounters),
+                                               sizeof(GnAreaWalk),
+                                               offsetof(GnArea, kind),
+                                               offsetof(GnArea, root),
+                                               offsetof(GnAreaWalk, exit)};
+  REQUIRE(context().download_values<std::uint32_t>(out, 26) == expected);
 }
 
 TEST_CASE("arithmetic that decides trees has the same bits on the device", "[portable][memcheck]") {

@@ -1,0 +1,92 @@
+#include "gnomon/device/ray_batches.h"
+
+#include <bit>
+
+#include "gnomon/cl/launch.h"
+
+namespace gnomon {
+namespace {
+
+// Rays per launch: large enough to fill any device, small enough for its buffers and for prompt cancelling.
+constexpr std::size_t kBatch = 1U << 20U;
+// The same where every ray keeps a stack in memory.
+constexpr std::size_t kBatchInPasses = 1U << 15U;
+// Turns of loops that one step may cost the up to 16 rays a device's vector unit traces side by side.
+constexpr std::uint32_t kTurnsPerStep = 64;
+
+// The stack a traversal needs: every level leaves at most one node waiting. A few sizes only, so that trees
+// share compiled programs.
+std::uint32_t stack_size_for(std::uint32_t max_depth) {
+  return (max_depth + 1 + 31) / 32 * 32;
+}
+
+std::uint32_t step_limit_for(const cl::DeviceInfo& device, std::uint32_t wanted) {
+  if (device.loop_limit == 0) return wanted;
+  const std::uint32_t most = std::max(1U, device.loop_limit / kTurnsPerStep);
+  return wanted == 0 ? most : std::min(wanted, most);
+}
+
+}  // namespace
+
+std::string TracePlan::program_options() const {
+  return "-DGN_STACK_SIZE=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
+         " -DGN_STEP_LIMIT=" + std::to_string(step_limit);
+}
+
+std::size_t TracePlan::batch_of(std::size_t rays) const {
+  return std::clamp<std::size_t>(rays, 1, step_limit == 0 ? kBatch : kBatchInPasses);
+}
+
+TracePlan plan_trace(const cl::DeviceInfo& device, const TraceOptions& options, std::uint32_t max_depth,
+                     std::uint64_t steps, std::uint32_t state_bytes) {
+  if (!std::has_single_bit(options.work_group_size)) {
+    throw Error(ErrorCode::kInvalidArgument, "trace work_group_size must be a power of two");
+  }
+  TracePlan plan;
+  plan.work_group_size = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(options.work_group_size, std::bit_floor(device.max_work_group)));
+  plan.stack_size = stack_size_for(max_depth);
+  plan.step_limit = step_limit_for(device, options.step_limit);
+  // A ray visits every node and every triangle once at worst, and a pass ends within one leaf of its limit.
+  plan.most_passes = plan.step_limit == 0 ? 1 : static_cast<std::uint32_t>(steps / plan.step_limit + 1);
+  plan.state_bytes = state_bytes;
+  plan.counters = options.counters;
+  return plan;
+}
+
+Passes make_passes(const cl::Context& context, const TracePlan& plan, std::size_t rays) {
+  if (plan.step_limit == 0) return {};
+  return {context.create_buffer("ray_states", rays * plan.state_bytes),
+          context.create_buffer("waiting_nodes", rays * plan.stack_size * sizeof(std::uint32_t)),
+          context.create_buffer("waiting_entries", rays * plan.stack_size * sizeof(float)),
+          context.create_buffer("paused_rays", sizeof(std::uint32_t))};
+}
+
+double run_passes(const cl::Context& context, const TracePlan& plan, const Launch& launch,
+                  const Passes& passes, const EnqueuePass& enqueue) {
+  double ms = 0.0;
+  for (std::uint32_t pass = 0; pass < plan.most_passes; ++pass) {
+    if (plan.step_limit != 0) context.fill(passes.paused, 0);
+    const auto event = enqueue(launch, passes, pass);
+    cl::wait(event);
+    ms += event_ms(event);
+    if (plan.step_limit == 0) return ms;
+    if (context.download_values<std::uint32_t>(passes.paused, 1).front() == 0) return ms;
+  }
+  throw Error(ErrorCode::kDevice,
+              context.device().name + " ended the loops of a traversal by itself; use another device");
+}
+
+double event_ms(const cl::Handle<cl_event>& event) {
+  cl_ulong start = 0;
+  cl_ulong end = 0;
+  if (clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) !=
+          CL_SUCCESS ||
+      clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) !=
+          CL_SUCCESS) {
+    return 0.0;
+  }
+  return static_cast<double>(end - start) * 1e-6;
+}
+
+}  // namespace gnomon

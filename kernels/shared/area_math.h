@@ -18,15 +18,16 @@
 
 #include "area_layout.h"
 #include "build_layout.h"
+#include "elementary_math.h"
 
 #define GN_AREA_MARGIN 1.9073486e-06f   // 2^-19
 #define GN_AREA_SLOPE 9.5367432e-07f    // 2^-20
 #define GN_AREA_SHORTER 9.9999905e-01f  // 1 - 2^-20
 
 #ifdef __OPENCL_VERSION__
-GN_INLINE gn_f32 gn_root(gn_f32 x) { return sqrt(x); }
+GN_INLINE gn_f32 gn_device_root(gn_f32 x) { return sqrt(x); }
 #else
-GN_INLINE gn_f32 gn_root(gn_f32 x) { return std::sqrt(x); }
+GN_INLINE gn_f32 gn_device_root(gn_f32 x) { return std::sqrt(x); }
 #endif
 
 // A ray as areas see it: only the part from tmin on counts.
@@ -79,8 +80,6 @@ GN_INLINE gn_f32 gn_area_margin(const GnArea* area, const GnRayStart* start) {
   return GN_AREA_MARGIN * gn_max(area->size, start->reach);
 }
 
-GN_INLINE gn_f32 gn_dot(const gn_f32* a, const gn_f32* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 // The ball's radius less its margin; negative when nothing is left of it.
 GN_INLINE gn_f32 gn_ball_radius(const GnArea* area, gn_f32 margin) { return area->radius - 4.0f * margin; }
 
@@ -120,7 +119,7 @@ GN_INLINE gn_f32 gn_ball_exit(const GnArea* area, const GnRayStart* start, gn_f3
   a = gn_dot(start->direction, start->direction);
   b = gn_dot(q, start->direction);
   c = gn_min(gn_dot(q, q) - radius * radius, 0.0f);
-  root = gn_root(b * b - a * c);
+  root = gn_device_root(b * b - a * c);
   if (b > 0.0f) return -c / (b + root);
   return (root - b) / a;
 }

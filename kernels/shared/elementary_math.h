@@ -59,4 +59,6 @@ GN_INLINE gn_f32 gn_angle_of(gn_f32 y, gn_f32 x) {
   return x < 0.0f ? 3.1415927f - angle : angle;
 }
 
+GN_INLINE gn_f32 gn_dot(const gn_f32* a, const gn_f32* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
 #endif

@@ -9,8 +9,6 @@
 // A face has four corners, and each of at most five cuts adds one.
 #define GN_MAX_CORNERS 10
 
-GN_INLINE gn_f32 gn_dot(const gn_f32* a, const gn_f32* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 // Keeps what lies where x * px + y * py + z * pz + offset >= 0 (Sutherland & Hodgman 1974); returns the corners left.
 // from and to are different arrays.
 GN_INLINE gn_u32 gn_cut_polygon(const gn_f32* from, gn_u32 count, const gn_f32* plane, gn_f32 offset, gn_f32* to) {

@@ -40,8 +40,9 @@ typedef struct GnForest {
   GnLeaves leaves;
   GnTopLevel top;
 } GnForest;
-#define GN_FOREST_PARAMETERS \
-  __global const GnNode *nodes, __global const GnTriangle *triangles, __global const uint *order, GN_TOP_LEVEL_PARAMETERS
+#define GN_FOREST_PARAMETERS                                                                       \
+  __global const GnNode *nodes, __global const GnTriangle *triangles, __global const uint *order, \
+      GN_TOP_LEVEL_PARAMETERS
 
 static inline GnForest forest_of(GN_FOREST_PARAMETERS) {
   GnForest forest;
@@ -157,7 +158,8 @@ __kernel void trace_areas_closest(GN_FOREST_PARAMETERS, __global const float8* r
     if (!GN_RESUME(&state, &stack)) return;
     walk_ray(&state, &stack, &ray, &forest, invalid_rays, 0);
     GN_PAUSE(&state)
-    hits[index] = (float4)(state.walk.best.t, state.walk.best.u, state.walk.best.v, as_float(state.walk.best.primitive));
+    hits[index] =
+        (float4)(state.walk.best.t, state.walk.best.u, state.walk.best.v, as_float(state.walk.best.primitive));
     store_counters(counters, index, &state);
   }
 }

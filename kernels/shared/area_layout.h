@@ -40,8 +40,8 @@ typedef struct GnAreaBox {
 } GnAreaBox;
 GN_SIZE_IS(GnAreaBox, 32);
 
-// A cell of an octree. Inner: children at [first_child, first_child + 8), number by bits x = 1, y = 2, z = 4 (set: upper
-// half). Leaf (first_child == GN_NONE): its areas are [first, first + count) of the octree's list, ascending.
+// A cell of an octree. Inner: children at [first_child, first_child + 8), numbered by bits x = 1, y = 2, z = 4 (set:
+// upper half). Leaf (first_child == GN_NONE): its areas are [first, first + count) of the octree's list, ascending.
 typedef struct GnAreaCell {
   gn_u32 first_child;
   gn_u32 first;

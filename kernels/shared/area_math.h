@@ -110,7 +110,7 @@ GN_INLINE int gn_area_is_affine(const GnArea* area, const GnRayStart* start) {
   return along * along >= area->affinity * gn_dot(v, v) * gn_dot(start->direction, start->direction);
 }
 
-// How far along start->direction the ball reaches: the root of |q + x d|^2 = radius^2 in the form where nothing cancels.
+// How far along start->direction the ball reaches: the root of |q + x d|^2 = radius^2 in the form that does not cancel.
 GN_INLINE gn_f32 gn_ball_exit(const GnArea* area, const GnRayStart* start, gn_f32 margin) {
   const gn_f32 radius = gn_ball_radius(area, margin);
   gn_f32 q[3], a, b, c, root;

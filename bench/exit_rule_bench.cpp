@@ -154,7 +154,11 @@ class SceneRun {
 
 gnomon::Scene load(const std::string& thesis_name, const std::filesystem::path& folder) {
   const std::string source = gnomon::scene_source_of(thesis_name);
-  if (source.starts_with("gen:")) return gnomon::generate_scene(source.substr(4), 1000, kSeed);
+  for (const gnomon::GeneratorInfo& generator : gnomon::generators()) {
+    if (source == "gen:" + std::string(generator.name)) {
+      return gnomon::generate_scene(generator.name, generator.default_triangles, kSeed);
+    }
+  }
   return gnomon::import_scene((folder / source).string());
 }
 

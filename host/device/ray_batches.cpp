@@ -29,6 +29,10 @@ std::uint32_t step_limit_for(const cl::DeviceInfo& device, std::uint32_t wanted)
 }  // namespace
 
 std::string TracePlan::program_options() const {
+  if (wide) {
+    return "-DGN_WIDE_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
+           " -DGN_PORTABLE=" + (portable ? "1" : "0");
+  }
   return "-DGN_STACK_SIZE=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
          " -DGN_STEP_LIMIT=" + std::to_string(step_limit);
 }
@@ -37,20 +41,43 @@ std::size_t TracePlan::batch_of(std::size_t rays) const {
   return std::clamp<std::size_t>(rays, 1, step_limit == 0 ? kBatch : kBatchInPasses);
 }
 
-TracePlan plan_trace(const cl::DeviceInfo& device, const TraceOptions& options, std::uint32_t max_depth,
-                     std::uint64_t steps, std::uint32_t state_bytes) {
+namespace {
+
+TracePlan common_plan(const cl::DeviceInfo& device, const TraceOptions& options) {
   if (!std::has_single_bit(options.work_group_size)) {
     throw Error(ErrorCode::kInvalidArgument, "trace work_group_size must be a power of two");
   }
   TracePlan plan;
   plan.work_group_size = static_cast<std::uint32_t>(
       std::min<std::uint64_t>(options.work_group_size, std::bit_floor(device.max_work_group)));
+  plan.counters = options.counters;
+  return plan;
+}
+
+}  // namespace
+
+TracePlan plan_trace(const cl::DeviceInfo& device, const TraceOptions& options, std::uint32_t max_depth,
+                     std::uint64_t steps, std::uint32_t state_bytes) {
+  TracePlan plan = common_plan(device, options);
   plan.stack_size = stack_size_for(max_depth);
   plan.step_limit = step_limit_for(device, options.step_limit);
   // A ray visits every node and every triangle once at worst, and a pass ends within one leaf of its limit.
   plan.most_passes = plan.step_limit == 0 ? 1 : static_cast<std::uint32_t>(steps / plan.step_limit + 1);
   plan.state_bytes = state_bytes;
-  plan.counters = options.counters;
+  return plan;
+}
+
+TracePlan plan_wide_trace(const cl::DeviceInfo& device, const TraceOptions& options, std::uint32_t depth) {
+  if (options.step_limit != 0) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "the wide flavour traces rays in one go: leave step_limit 0 or use the thread flavour");
+  }
+  TracePlan plan = common_plan(device, options);
+  // A node leaves at most seven of its children waiting; the last vector written there is eight long.
+  plan.stack_size = (7 * depth + 8 + 63) / 64 * 64;
+  plan.most_passes = 1;
+  plan.wide = true;
+  plan.portable = options.portable;
   return plan;
 }
 

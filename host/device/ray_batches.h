@@ -20,6 +20,8 @@ struct TracePlan {
   std::uint32_t most_passes = 0;
   std::uint32_t state_bytes = 0;  // of a ray between passes
   bool counters = false;
+  bool wide = false;
+  bool portable = false;
   [[nodiscard]] std::string program_options() const;
   [[nodiscard]] std::size_t batch_of(std::size_t rays) const;  // rays per launch
 };
@@ -28,6 +30,10 @@ struct TracePlan {
 // Throws Error{kInvalidArgument} for a work_group_size that is no power of two.
 [[nodiscard]] TracePlan plan_trace(const cl::DeviceInfo& device, const TraceOptions& options,
                                    std::uint32_t max_depth, std::uint64_t steps, std::uint32_t state_bytes);
+
+// The same for a wide tree of this depth, traced in one go. Throws also for a step limit.
+[[nodiscard]] TracePlan plan_wide_trace(const cl::DeviceInfo& device, const TraceOptions& options,
+                                        std::uint32_t depth);
 
 // Where a batch traced in passes keeps its rays' state. Empty handles for one launch.
 struct Passes {

@@ -6,17 +6,65 @@
 
 namespace gnomon {
 
+namespace {
+
+TraceFlavour flavour_for(const cl::DeviceInfo& device, const TraceOptions& options) {
+  if (options.flavour != TraceFlavour::kAuto) return options.flavour;
+  return device.is_cpu && device.loop_limit == 0 && options.step_limit == 0 ? TraceFlavour::kWide : TraceFlavour::kThread;
+}
+
+}  // namespace
+
+const char* to_string(TraceFlavour flavour) {
+  switch (flavour) {
+    case TraceFlavour::kAuto: return "auto";
+    case TraceFlavour::kThread: return "thread";
+    case TraceFlavour::kWide: return "wide";
+  }
+  return "?";
+}
+
 Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options)
-    : context_(context),
-      tree_(tree),
-      plan_(std::make_unique<TracePlan>(plan_trace(context.device(), options, tree.max_depth,
-                                                   std::uint64_t{tree.node_count} + tree.triangle_count,
-                                                   sizeof(GnWalk)))) {
-  closest_ = context.programs().kernel({"trace.cl"}, plan_->program_options(), "trace_closest");
-  any_ = context.programs().kernel({"trace.cl"}, plan_->program_options(), "trace_any");
-  invalid_ = context.create_buffer("invalid_rays", sizeof(std::uint32_t));
-  no_counters_ = context.create_buffer("no_counters", sizeof(GnRayCounters));
-  context.fill(invalid_, 0);
+    : context_(context), flavour_(flavour_for(context.device(), options)) {
+  if (flavour_ == TraceFlavour::kWide) {
+    collapsed_ = collapse_device(context, tree);
+    trace_wide(collapsed_, options);
+  } else {
+    trace_binary(tree, options);
+  }
+}
+
+Tracer::Tracer(const cl::Context& context, const DeviceWideBvh& tree, const TraceOptions& options)
+    : context_(context), flavour_(TraceFlavour::kWide) {
+  if (options.flavour == TraceFlavour::kThread) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "the thread flavour traces binary trees, not wide ones; give it the tree before the collapse");
+  }
+  trace_wide(tree, options);
+}
+
+void Tracer::trace_binary(const DeviceBvh& tree, const TraceOptions& options) {
+  plan_ = std::make_unique<TracePlan>(plan_trace(context_.device(), options, tree.max_depth,
+                                                 std::uint64_t{tree.node_count} + tree.triangle_count,
+                                                 sizeof(GnWalk)));
+  nodes_ = tree.nodes.mem.get();
+  triangles_ = tree.leaf_triangles.mem.get();
+  set_up("trace.cl");
+}
+
+void Tracer::trace_wide(const DeviceWideBvh& tree, const TraceOptions& options) {
+  plan_ = std::make_unique<TracePlan>(plan_wide_trace(context_.device(), options, tree.depth));
+  nodes_ = tree.nodes.mem.get();
+  triangles_ = tree.blocks.mem.get();
+  set_up("trace_wide.cl");
+}
+
+void Tracer::set_up(const char* source) {
+  closest_ = context_.programs().kernel({source}, plan_->program_options(), "trace_closest");
+  any_ = context_.programs().kernel({source}, plan_->program_options(), "trace_any");
+  invalid_ = context_.create_buffer("invalid_rays", sizeof(std::uint32_t));
+  no_counters_ = context_.create_buffer("no_counters", sizeof(GnRayCounters));
+  context_.fill(invalid_, 0);
 }
 
 Tracer::~Tracer() = default;
@@ -25,7 +73,7 @@ Tracer::Tracer(Tracer&&) noexcept = default;
 cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                      const Passes& passes, std::uint32_t pass,
                                      std::span<const cl_event> wait_for) const {
-  cl::set_arguments(kernel.get(), tree_.nodes, tree_.leaf_triangles, launch.rays, launch.answers, invalid_,
+  cl::set_arguments(kernel.get(), nodes_, triangles_, launch.rays, launch.answers, invalid_,
                     launch.counters, launch.count);
   if (plan_->step_limit != 0) {
     cl::set_arguments_from(kernel.get(), 7, passes.states, passes.waiting, passes.entries, passes.paused,

@@ -11,13 +11,24 @@
 #include "gnomon/base/progress.h"
 #include "gnomon/cl/context.h"
 #include "gnomon/device/build_device.h"
+#include "gnomon/device/collapse_device.h"
 
 namespace gnomon {
 
 using Ray = GnRay;
 using Hit = GnHit;
 
+// How rays are traced; the answers are the same bits.
+enum class TraceFlavour : std::uint32_t {
+  kAuto,    // wide on CPUs that let loops run, thread elsewhere
+  kThread,  // the binary tree, one box at a time: one ray per work-item is the parallelism
+  kWide,    // the wide tree, eight boxes at a time: explicit vectors are
+};
+[[nodiscard]] const char* to_string(TraceFlavour flavour);
+
 struct TraceOptions {
+  TraceFlavour flavour = TraceFlavour::kAuto;
+  bool portable = false;  // wide: OpenCL C alone, without the device compiler's own instructions
   bool counters = false;               // also count boxes and triangles per ray; slower
   std::uint32_t work_group_size = 64;  // power of two up to the device's limit
   // A ray's nodes and triangles per launch; rays that need more go on in another launch. 0: all in one,
@@ -42,8 +53,11 @@ struct TracePlan;
 // Holds the kernels for one tree. The context and the tree must outlive it.
 class Tracer {
  public:
-  // Throws Error: kDevice, kInvalidArgument.
+  // The wide flavour collapses the tree first and keeps the result; leaves too large for it leave kAuto with
+  // the thread flavour. Throws Error: kDevice, kOutOfMemory, kInvalidArgument.
   Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options = {});
+  // Traces a wide tree, which must be the flavour asked for. Throws the same.
+  Tracer(const cl::Context& context, const DeviceWideBvh& tree, const TraceOptions& options = {});
   Tracer(Tracer&&) noexcept;
   ~Tracer();
 
@@ -59,10 +73,14 @@ class Tracer {
                                                      std::span<const cl_event> wait_for = {}) const;
   [[nodiscard]] cl::Handle<cl_event> enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
                                                  std::span<const cl_event> wait_for = {}) const;
+  [[nodiscard]] TraceFlavour flavour() const { return flavour_; }
   // Rays so far that were not traceable, over all calls. Blocks until earlier launches are done.
   [[nodiscard]] std::uint64_t invalid_rays() const;
 
  private:
+  void trace_binary(const DeviceBvh& tree, const TraceOptions& options);
+  void trace_wide(const DeviceWideBvh& tree, const TraceOptions& options);
+  void set_up(const char* source);
   [[nodiscard]] cl::Handle<cl_event> enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                              const Passes& passes, std::uint32_t pass,
                                              std::span<const cl_event> wait_for) const;
@@ -74,7 +92,10 @@ class Tracer {
                                       const Progress& progress) const;
 
   const cl::Context& context_;
-  const DeviceBvh& tree_;
+  TraceFlavour flavour_;
+  DeviceWideBvh collapsed_;  // when the tracer made it
+  cl_mem nodes_ = nullptr;
+  cl_mem triangles_ = nullptr;
   std::unique_ptr<TracePlan> plan_;
   cl::Handle<cl_kernel> closest_;
   cl::Handle<cl_kernel> any_;

@@ -197,14 +197,12 @@ GN_INLINE gn_f32 gn_corners_from(const gn_f32* origin, const gn_f32* v0, const g
   return largest;
 }
 
-// Ray against closed triangle, either side. On a hit fills t, u, v of `hit` (not its primitive) and returns 1.
-GN_INLINE int gn_triangle_hit(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2,
-                              GnHit* hit) {
+// The exact part of gn_triangle_hit, for a triangle that gn_triangle_filter gave this verdict, 1 or -1.
+GN_INLINE int gn_triangle_resolve(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2,
+                                  int verdict, GnHit* hit) {
   GnWide r[9], weights[3], permanents[3];
   gn_f32 direction[3], unit, direction_unit;
-  const int verdict = gn_triangle_filter(ray, v0, v1, v2);
   int i;
-  if (verdict == 0) return 0;
   unit = gn_wide_unit(gn_corners_from(ray->origin, v0, v1, v2, r));
   direction_unit = gn_wide_unit(ray->direction[ray->kz]);
   for (i = 0; i < 9; ++i) r[i] = gn_wide_times_unit(r[i], unit);
@@ -217,6 +215,13 @@ GN_INLINE int gn_triangle_hit(const GnRayFrame* ray, const gn_f32* v0, const gn_
   if (verdict < 0 && !gn_signs_agree(ray, v0, v1, v2, weights, permanents)) return 0;
   gn_fill_hit(r, ray->kz, direction[ray->kz], direction_unit / unit, weights, hit);
   return 1;
+}
+
+// Ray against closed triangle, either side. On a hit fills t, u, v of `hit` (not its primitive) and returns 1.
+GN_INLINE int gn_triangle_hit(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2,
+                              GnHit* hit) {
+  const int verdict = gn_triangle_filter(ray, v0, v1, v2);
+  return verdict != 0 && gn_triangle_resolve(ray, v0, v1, v2, verdict, hit);
 }
 
 // Whether `hit` (range already checked) comes before the best so far: nearer, or as near with a lower index, so that

@@ -1,0 +1,32 @@
+// Collapsing a tree on the device into its wide form (gnomon/shared/wide_layout.h). Not for tracing it. Feeds
+// trace_device.h, benches.
+#pragma once
+
+#include <cstdint>
+
+#include "gnomon/device/build_device.h"
+#include "gnomon/tree/wide.h"
+
+namespace gnomon {
+
+// A wide tree in device memory: GnWideNode and GnTriangleBlock. All that its traversal needs.
+struct DeviceWideBvh {
+  cl::Buffer nodes;
+  cl::Buffer blocks;
+  std::uint32_t triangle_count = 0;
+  std::uint32_t node_count = 0;
+  std::uint32_t block_count = 0;
+  std::uint32_t depth = 0;
+  [[nodiscard]] std::uint64_t bytes() const { return nodes.bytes + blocks.bytes; }
+};
+
+// The bytes depend on the tree and the options alone. Throws Error: kInvalidArgument (options; a leaf of more
+// than GN_MAX_WIDE_LEAF triangles; a device that ends the loops this takes), kOutOfMemory, kDevice.
+[[nodiscard]] DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
+                                            const CollapseOptions& options = {},
+                                            BuildReport* report = nullptr);
+
+// Copies a wide tree to the host.
+[[nodiscard]] WideBvh download_wide(const cl::Context& context, const DeviceWideBvh& tree);
+
+}  // namespace gnomon

@@ -1,0 +1,204 @@
+#include "gnomon/tree/wide.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+
+#include "gnomon/base/error.h"
+#include "gnomon/shared/collapse_math.h"
+
+namespace gnomon {
+namespace {
+
+void check_cost(const char* name, float value) {
+  if (!(value > 0.0F && value <= 1000.0F)) {
+    throw Error(ErrorCode::kInvalidArgument, std::string("collapse option ") + name + " is " +
+                                                 std::to_string(value) + "; it must lie in (0, 1000]");
+  }
+}
+
+WideNode empty_node() {
+  WideNode node{};
+  for (int k = 0; k < 3; ++k) {
+    for (std::uint32_t slot = 0; slot < GN_WIDTH; ++slot) {
+      node.planes[2 * k][slot] = std::numeric_limits<float>::infinity();
+      node.planes[2 * k + 1][slot] = -std::numeric_limits<float>::infinity();
+    }
+  }
+  for (unsigned& link : node.links) link = GN_NONE;
+  return node;
+}
+
+class Collapse {
+ public:
+  Collapse(const Bvh& bvh, std::span<const GnTriangle> triangles, const CollapseOptions& options)
+      : bvh_(bvh), triangles_(triangles), costs_{options.cost_node, options.cost_block} {
+    forests_.resize(bvh.nodes.size() / 2);
+    weigh();
+  }
+
+  WideBvh run() {
+    wide_.nodes.push_back(empty_node());
+    emit(0, 0, 1);
+    return std::move(wide_);
+  }
+
+ private:
+  // Children before parents: the reverse of a walk that meets parents first.
+  void weigh() {
+    std::vector<std::uint32_t> inner;
+    std::vector<std::uint32_t> open{0};
+    while (!open.empty()) {
+      const std::uint32_t index = open.back();
+      open.pop_back();
+      const Node& node = bvh_.nodes[index];
+      if (node.count > GN_MAX_WIDE_LEAF) throw_leaf_too_large(node.count);
+      if (node.count > 0) continue;
+      inner.push_back(index);
+      open.push_back(node.first);
+      open.push_back(node.first + 1);
+    }
+    for (auto it = inner.rbegin(); it != inner.rend(); ++it) {
+      const Node& node = bvh_.nodes[*it];
+      const GnForest left = forest_of(node.first);
+      const GnForest right = forest_of(node.first + 1);
+      forests_[(node.first - 1) / 2] = gn_inner_forest(gn_half_area(&node), &left, &right, costs_);
+    }
+  }
+
+  [[nodiscard]] GnForest forest_of(std::uint32_t node) const {
+    return gn_forest_of(bvh_.nodes.data(), forests_.data(), node, costs_.block);
+  }
+
+  // Writes the wide node at `place`; its inner children get neighbouring places, then each is written with all
+  // that is below it. Depth is that of the tree: recursion is shallow.
+  void emit(std::uint32_t root, std::uint32_t place, std::uint32_t depth) {
+    GnSlots slots;
+    gn_open_wide_node(bvh_.nodes.data(), forests_.data(), root, costs_, &slots);
+    wide_.depth = std::max(wide_.depth, depth);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> inner;
+    for (std::uint32_t slot = 0; slot < slots.count; ++slot) {
+      const Node& node = bvh_.nodes[slots.node[slot]];
+      std::uint32_t link = 0;
+      if (slots.triangles[slot] == 0) {
+        link = static_cast<std::uint32_t>(wide_.nodes.size());
+        inner.emplace_back(slots.node[slot], link);
+        wide_.nodes.push_back(empty_node());
+      } else {
+        link = add_leaf(slots.node[slot], slots.triangles[slot]);
+      }
+      WideNode& out = wide_.nodes[place];
+      for (int k = 0; k < 3; ++k) {
+        out.planes[2 * k][slot] = node.lo[k];
+        out.planes[2 * k + 1][slot] = node.hi[k];
+      }
+      out.links[slot] = link;
+    }
+    for (const auto& [child, child_place] : inner) emit(child, child_place, depth + 1);
+  }
+
+  std::uint32_t add_leaf(std::uint32_t node, std::uint32_t count) {
+    const auto block = static_cast<std::uint32_t>(wide_.blocks.size());
+    const std::uint32_t first = gn_first_triangle(bvh_.nodes.data(), node);
+    wide_.blocks.resize(wide_.blocks.size() + gn_blocks_of(count));
+    for (std::uint32_t i = 0; i < gn_blocks_of(count) * GN_WIDTH; ++i) {
+      TriangleBlock& out = wide_.blocks[block + i / GN_WIDTH];
+      const std::uint32_t lane = i % GN_WIDTH;
+      out.primitives[lane] = i < count ? bvh_.primitives[first + i] : GN_NONE;
+      if (i >= count) continue;
+      float corners[9];
+      std::memcpy(corners, &triangles_[out.primitives[lane]], sizeof corners);
+      for (int k = 0; k < 9; ++k) out.corners[k][lane] = corners[k];
+    }
+    return gn_leaf_link(block, count);
+  }
+
+  const Bvh& bvh_;
+  std::span<const GnTriangle> triangles_;
+  GnCollapseCosts costs_;
+  std::vector<GnForest> forests_;
+  WideBvh wide_;
+};
+
+double slot_area(const WideNode& node, std::uint32_t slot) {
+  const auto extent = [&](int k) {
+    return static_cast<double>(node.planes[2 * k + 1][slot]) - node.planes[2 * k][slot];
+  };
+  return extent(0) * (extent(1) + extent(2)) + extent(1) * extent(2);
+}
+
+double node_area(const WideNode& node) {
+  WideNode whole = empty_node();
+  for (std::uint32_t slot = 0; slot < GN_WIDTH; ++slot) {
+    for (int k = 0; k < 3; ++k) {
+      whole.planes[2 * k][0] = std::min(whole.planes[2 * k][0], node.planes[2 * k][slot]);
+      whole.planes[2 * k + 1][0] = std::max(whole.planes[2 * k + 1][0], node.planes[2 * k + 1][slot]);
+    }
+  }
+  return slot_area(whole, 0);
+}
+
+}  // namespace
+
+void throw_leaf_too_large(std::uint32_t triangles) {
+  throw Error(ErrorCode::kInvalidArgument, "a leaf of " + std::to_string(triangles) +
+                                               " triangles is too large for a wide tree, which takes " +
+                                               std::to_string(GN_MAX_WIDE_LEAF) +
+                                               "; build with smaller leaves or trace the binary tree");
+}
+
+void CollapseOptions::check() const {
+  check_cost("cost_node", cost_node);
+  check_cost("cost_block", cost_block);
+}
+
+WideBvh collapse_reference(const Bvh& bvh, std::span<const GnTriangle> triangles,
+                           const CollapseOptions& options) {
+  options.check();
+  if (bvh.nodes.empty()) return {{empty_node()}, {}, 1};
+  return Collapse(bvh, triangles, options).run();
+}
+
+WideStats stats_of(const WideBvh& wide) {
+  WideStats stats;
+  const double root_area = node_area(wide.nodes[0]);
+  const auto probability = [&](double area) { return root_area > 0.0 ? area / root_area : 1.0; };
+  stats.expected_nodes = 1.0;
+  std::uint64_t children = 0;
+  std::uint64_t triangles = 0;
+  for (const WideNode& node : wide.nodes) {
+    for (std::uint32_t slot = 0; slot < GN_WIDTH; ++slot) {
+      const std::uint32_t link = node.links[slot];
+      if (link == GN_NONE) continue;
+      children += 1;
+      if ((link & GN_LEAF_LINK) == 0) {
+        stats.expected_nodes += probability(slot_area(node, slot));
+      } else {
+        triangles += gn_link_triangles(link);
+        stats.expected_blocks += probability(slot_area(node, slot)) * gn_blocks_of(gn_link_triangles(link));
+      }
+    }
+  }
+  stats.mean_children = static_cast<double>(children) / static_cast<double>(wide.nodes.size());
+  if (!wide.blocks.empty())
+    stats.mean_block = static_cast<double>(triangles) / static_cast<double>(wide.blocks.size());
+  stats.bytes = wide.nodes.size() * sizeof(WideNode) + wide.blocks.size() * sizeof(TriangleBlock);
+  return stats;
+}
+
+std::string tree_hash(const WideBvh& wide) {
+  XXH3_state_t state;
+  XXH3_64bits_reset(&state);
+  XXH3_64bits_update(&state, wide.nodes.data(), wide.nodes.size() * sizeof(WideNode));
+  XXH3_64bits_update(&state, wide.blocks.data(), wide.blocks.size() * sizeof(TriangleBlock));
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx",
+                static_cast<unsigned long long>(XXH3_64bits_digest(&state)));
+  return text;
+}
+
+}  // namespace gnomon

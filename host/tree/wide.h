@@ -1,0 +1,62 @@
+// The wide tree as a value: a binary tree collapsed to eight children a node and eight triangles a block, for
+// traversal on CPUs. Not for building the binary tree. Feeds the wide tracer's reference, tests, statistics.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gnomon/shared/wide_layout.h"
+#include "gnomon/tree/bvh.h"
+#include "gnomon/tree/bvh_check.h"
+
+namespace gnomon {
+
+using WideNode = GnWideNode;
+using TriangleBlock = GnTriangleBlock;
+
+// What a step costs, in any unit: the collapse weighs nodes against blocks with these.
+struct CollapseOptions {
+  float cost_node = 1.0F;   // (0, 1000]
+  float cost_block = 1.0F;  // of eight triangles; (0, 1000]
+  // Throws Error{kInvalidArgument} naming the option, its value and its range.
+  void check() const;
+};
+
+// An empty scene has one node without children. The root is node 0.
+struct WideBvh {
+  std::vector<WideNode> nodes;
+  std::vector<TriangleBlock> blocks;
+  std::uint32_t depth = 0;  // nodes on the longest way from the root to a leaf
+};
+
+// Leaves of the binary tree may hold up to GN_MAX_WIDE_LEAF triangles; others make it throw
+// Error{kInvalidArgument}. Collapses with the least expected cost under the surface area heuristic (Ylitie,
+// Karras, Laine 2017). Same bytes as the device's.
+[[nodiscard]] WideBvh collapse_reference(const Bvh& bvh, std::span<const GnTriangle> triangles,
+                                         const CollapseOptions& options = {});
+
+[[noreturn]] void throw_leaf_too_large(std::uint32_t triangles);
+
+// What a wide tree looks like; expected numbers are those of a ray that meets the root's box, under the surface
+// area heuristic.
+struct WideStats {
+  double expected_nodes = 0.0;
+  double expected_blocks = 0.0;
+  double mean_children = 0.0;  // of 8
+  double mean_block = 0.0;     // triangles in a block, of 8
+  std::uint64_t bytes = 0;     // nodes and blocks
+};
+[[nodiscard]] WideStats stats_of(const WideBvh& wide);
+
+// The first broken promise, or nothing: links in range and each node and block reached once, boxes that hold
+// their triangles and lie inside the parent's, every triangle once with its corners, empty slots inverted and
+// last, slots in order of area, depth. Any bytes may come in.
+[[nodiscard]] std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles);
+
+// XXH3-64 of nodes and blocks, 16 hex digits.
+[[nodiscard]] std::string tree_hash(const WideBvh& wide);
+
+}  // namespace gnomon

@@ -1,0 +1,120 @@
+// Eight lanes side by side: what OpenCL C lacks for them (a comparison's bits, compaction, sorting), in portable form
+// and, where the device's own compiler says it can, with the instruction made for it. Both give the same lanes.
+// Options: GN_PORTABLE (1: the portable form everywhere). Feeds trace_wide.cl.
+#ifndef GNOMON_EIGHT_H
+#define GNOMON_EIGHT_H
+
+#ifndef GN_PORTABLE
+#define GN_PORTABLE 0
+#endif
+#if !GN_PORTABLE && defined(__clang__) && defined(__AVX512VL__) && defined(__AVX512F__)
+#define GN_EIGHT_AVX512 1
+#else
+#define GN_EIGHT_AVX512 0
+#endif
+#if !GN_PORTABLE && defined(__clang__) && defined(__AVX__)
+#define GN_EIGHT_AVX 1
+#else
+#define GN_EIGHT_AVX 0
+#endif
+
+// One instruction each; the second argument wins when a comparison meets a NaN, as in gn_min and gn_max.
+#define GN_MIN8(a, b) ((a) < (b) ? (a) : (b))
+#define GN_MAX8(a, b) ((a) > (b) ? (a) : (b))
+
+#define GN_LANES8 ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
+
+static inline uint lowest_bit(uint x) {
+#if GN_EIGHT_AVX
+  return (uint)__builtin_ctz(x);
+#else
+  return 31u - clz(x & (0u - x));
+#endif
+}
+static inline uint highest_bit(uint x) { return 31u - clz(x); }
+
+// Bit i: lane i of a comparison's result is true.
+static inline uint bits_of_lanes(int8 lanes) {
+#if GN_EIGHT_AVX
+  return (uint)__builtin_ia32_movmskps256(as_float8(lanes));
+#else
+  const int8 bits = lanes & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+  const int4 four = bits.lo | bits.hi;
+  const int2 two = four.lo | four.hi;
+  return (uint)(two.x | two.y);
+#endif
+}
+
+static inline uint lanes_not_above(float8 a, float8 b) {
+#if GN_EIGHT_AVX512
+  return (uint)__builtin_ia32_cmpps256_mask(a, b, 18, (uchar)255);  // less or equal, quiet
+#else
+  return bits_of_lanes(a <= b);
+#endif
+}
+
+// One stage of a sorting network: lanes where `upper` is set keep the larger of themselves and their partner.
+#define GN_EXCHANGE8(keys, partner, upper)                              \
+  {                                                                     \
+    const int8 other = partner;                                         \
+    keys = (upper) ? max(keys, other) : min(keys, other);               \
+  }
+#define GN_SIGNS8(a, b, c, d, e, f, g, h) ((int8)(-(a), -(b), -(c), -(d), -(e), -(f), -(g), -(h)))
+
+// Descending order of lanes 0 to 3; lanes 4 to 7 are undefined.
+static inline int8 sort_first_four(int8 keys) {
+  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(1, 0, 0, 1, 1, 0, 0, 1));
+  GN_EXCHANGE8(keys, keys.s23016745, GN_SIGNS8(1, 1, 0, 0, 1, 1, 0, 0));
+  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(1, 0, 1, 0, 1, 0, 1, 0));
+  return keys;
+}
+
+// Descending order of all lanes (bitonic: Batcher 1968).
+static inline int8 sort_eight(int8 keys) {
+  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(1, 0, 0, 1, 1, 0, 0, 1));
+  GN_EXCHANGE8(keys, keys.s23016745, GN_SIGNS8(1, 1, 0, 0, 0, 0, 1, 1));
+  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(1, 0, 1, 0, 0, 1, 0, 1));
+  GN_EXCHANGE8(keys, keys.s45670123, GN_SIGNS8(1, 1, 1, 1, 0, 0, 0, 0));
+  GN_EXCHANGE8(keys, keys.s23016745, GN_SIGNS8(1, 1, 0, 0, 1, 1, 0, 0));
+  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(1, 0, 1, 0, 1, 0, 1, 0));
+  return keys;
+}
+
+// Where a ray enters a box, with the box's lane in the three lowest bits: orders boxes by distance. entries must not
+// be negative.
+static inline int8 entry_keys(float8 entries) { return (as_int8(entries) & ~7) | GN_LANES8; }
+
+// Writes the keys of the lanes in mask (two or more) in descending order to keys_out, and their links to links_out.
+// Both must have room for eight.
+static inline void put_by_distance(float8 entries, uint mask, __global const uint* links, uint count, uint* keys_out,
+                                   uint* links_out) {
+#if GN_EIGHT_AVX512
+  int8 keys = as_int8(__builtin_ia32_compresssi256_mask(entry_keys(entries), (int8)INT_MIN, (uchar)mask));
+  keys = count <= 4u ? sort_first_four(keys) : sort_eight(keys);
+  vstore8(as_uint8(keys), 0, keys_out);
+  vstore8(as_uint8(__builtin_ia32_permvarsi256(as_int8(vload8(0, links)), keys)), 0, links_out);
+#else
+  const int8 chosen = ((int8)mask & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
+  const int8 keys = sort_eight(chosen ? entry_keys(entries) : (int8)INT_MIN);
+  uint i;
+  vstore8(as_uint8(keys), 0, keys_out);
+  for (i = 0u; i < count; ++i) links_out[i] = links[keys_out[i] & 7u];
+#endif
+}
+
+// Writes the links of the lanes in mask, lowest lane first, to links_out, which must have room for eight.
+static inline void put_in_order(uint mask, __global const uint* links, uint* links_out) {
+#if GN_EIGHT_AVX512
+  vstore8(as_uint8(__builtin_ia32_compresssi256_mask(as_int8(vload8(0, links)), (int8)0, (uchar)mask)), 0,
+          links_out);
+#else
+  uint i = 0u;
+  while (mask != 0u) {
+    links_out[i] = links[lowest_bit(mask)];
+    mask &= mask - 1u;
+    i += 1u;
+  }
+#endif
+}
+
+#endif

@@ -1,0 +1,281 @@
+// Batched ray tracing over the wide tree, one ray per work-item, eight boxes or eight triangles a step: the flavour for
+// CPUs. Closest hit visits children by distance, any hit the largest first. Hits are those of trace.cl, bit for bit.
+// Options: GN_WIDE_STACK (at least 7 * depth of the wide tree + 8), GN_COUNTERS, GN_PORTABLE (eight.h).
+#include "shared/hit_math.h"
+#include "shared/wide_layout.h"
+#include "eight.h"
+
+#ifndef GN_WIDE_STACK
+#define GN_WIDE_STACK 256
+#endif
+#ifndef GN_COUNTERS
+#define GN_COUNTERS 0
+#endif
+
+typedef struct GnWideRay {
+  GnRayFrame frame;
+  float8 origin[3];
+  float8 inverse[3];
+  float8 far_inverse[3];  // a little larger: far sides are never taken for nearer than they are
+  uint near_side[3];      // which of a node's planes is met first, per axis
+  float tmin;
+  float tmax;
+} GnWideRay;
+
+typedef struct GnWideWalk {
+  GnHit best;
+  float limit;
+  uint found;
+  uint boxes;
+  uint triangles;
+} GnWideWalk;
+
+static inline GnWideRay wide_ray(const GnRay* ray) {
+  GnWideRay out;
+  uint k;
+  out.frame = gn_ray_frame(ray);
+  for (k = 0u; k < 3u; ++k) {
+    const uint backwards = out.frame.inverse[k] < 0.0f;
+    out.origin[k] = (float8)(ray->origin[k]);
+    out.inverse[k] = (float8)(out.frame.inverse[k]);
+    out.far_inverse[k] = (float8)(gn_slab_limit(gn_abs(out.frame.inverse[k])) * (backwards ? -1.0f : 1.0f));
+    out.near_side[k] = 2u * k + backwards;
+  }
+  out.tmin = ray->tmin;
+  out.tmax = ray->tmax;
+  return out;
+}
+
+// The slots whose boxes the ray may meet within [tmin, limit], and where it enters them.
+static inline uint boxes_met(const GnWideRay* ray, __global const GnWideNode* node, float limit, float8* entries) {
+  __global const float8* planes = (__global const float8*)node->planes;
+  const uint x = ray->near_side[0], y = ray->near_side[1], z = ray->near_side[2];
+  const float8 near_x = (planes[x] - ray->origin[0]) * ray->inverse[0];
+  const float8 near_y = (planes[y] - ray->origin[1]) * ray->inverse[1];
+  const float8 near_z = (planes[z] - ray->origin[2]) * ray->inverse[2];
+  const float8 far_x = (planes[x ^ 1u] - ray->origin[0]) * ray->far_inverse[0];
+  const float8 far_y = (planes[y ^ 1u] - ray->origin[1]) * ray->far_inverse[1];
+  const float8 far_z = (planes[z ^ 1u] - ray->origin[2]) * ray->far_inverse[2];
+  float8 near = GN_MAX8(near_x, (float8)ray->tmin);
+  float8 far = GN_MIN8(far_x, (float8)limit);
+  near = GN_MAX8(near_y, near);
+  far = GN_MIN8(far_y, far);
+  near = GN_MAX8(near_z, near);
+  far = GN_MIN8(far_z, far);
+  // The larger reciprocal makes a negative distance too small instead of too large.
+  if (ray->tmin < 0.0f) far = far + fabs(far) * (4.0f * GN_SLAB_SLACK);
+  *entries = near;
+  return lanes_not_above(near, far);
+}
+
+// The triangles of a block that gn_triangle_filter does not call certainly outside, and which of them it calls
+// certainly inside. Same operations in the same order, eight at a time.
+static inline uint triangles_met(const GnRayFrame* ray, __global const GnTriangleBlock* block, uint* inside) {
+  __global const float8* c = (__global const float8*)block->corners;
+  const uint kx = ray->kx, ky = ray->ky, kz = ray->kz;
+  const float ox = ray->origin[kx], oy = ray->origin[ky], oz = ray->origin[kz];
+  const float8 az = c[kz] - oz, bz = c[3u + kz] - oz, cz = c[6u + kz] - oz;
+  const float8 ax = (c[kx] - ox) - ray->shear_x * az;
+  const float8 ay = (c[ky] - oy) - ray->shear_y * az;
+  const float8 bx = (c[3u + kx] - ox) - ray->shear_x * bz;
+  const float8 by = (c[3u + ky] - oy) - ray->shear_y * bz;
+  const float8 cx = (c[6u + kx] - ox) - ray->shear_x * cz;
+  const float8 cy = (c[6u + ky] - oy) - ray->shear_y * cz;
+  const float8 u = cx * by - cy * bx;
+  const float8 v = ax * cy - ay * cx;
+  const float8 w = bx * ay - by * ax;
+  const float8 z = GN_MAX8(GN_MAX8(fabs(az), fabs(bz)), fabs(cz));
+  const float8 px = GN_MAX8(GN_MAX8(fabs(ax), fabs(bx)), fabs(cx));
+  const float8 py = GN_MAX8(GN_MAX8(fabs(ay), fabs(by)), fabs(cy));
+  const float8 q = GN_MAX8(px, py) + 9.5367432e-07f * z;
+  const float8 bound = 2.3841858e-06f * q * (q + z) + 1e-36f;
+  const float8 largest = GN_MAX8(GN_MAX8(u, v), w), smallest = GN_MIN8(GN_MIN8(u, v), w);
+  *inside = bits_of_lanes((smallest > bound) | (largest < -bound));
+  return ~bits_of_lanes((largest > bound) & (smallest < -bound)) & 255u;
+}
+
+// Decides lane `lane` of a block exactly; true when it is the best hit so far.
+static inline int test_triangle(GnWideWalk* walk, const GnWideRay* ray, __global const GnTriangleBlock* block,
+                                uint lane, int verdict) {
+  float v0[3], v1[3], v2[3];
+  GnHit hit;
+  uint k;
+  for (k = 0u; k < 3u; ++k) {
+    v0[k] = block->corners[k][lane];
+    v1[k] = block->corners[3u + k][lane];
+    v2[k] = block->corners[6u + k][lane];
+  }
+  if (!gn_triangle_resolve(&ray->frame, v0, v1, v2, verdict, &hit)) return 0;
+  if (!(hit.t >= ray->tmin && hit.t <= ray->tmax)) return 0;
+  hit.primitive = block->primitives[lane];
+  if (walk->found && !gn_hit_is_nearer(&hit, &walk->best)) return 0;
+  walk->best = hit;
+  walk->found = 1u;
+  walk->limit = gn_slab_limit(hit.t);
+  return 1;
+}
+
+// True when an any-hit walk is over.
+static inline int test_wide_leaf(GnWideWalk* walk, const GnWideRay* ray, __global const GnTriangleBlock* blocks,
+                                 uint link, int any_hit) {
+  uint left = gn_link_triangles(link);
+  __global const GnTriangleBlock* block = blocks + gn_link_block(link);
+#if GN_COUNTERS
+  walk->triangles += left;
+#endif
+  for (;;) {
+    uint inside;
+    uint met = triangles_met(&ray->frame, block, &inside) & (255u >> (8u - min(left, 8u)));
+    while (met != 0u) {
+      const uint lane = lowest_bit(met);
+      if (test_triangle(walk, ray, block, lane, (inside >> lane) & 1u ? 1 : -1) && any_hit) return 1;
+      met &= met - 1u;
+    }
+    if (left <= GN_WIDTH) return 0;
+    left -= GN_WIDTH;
+    block += 1;
+  }
+}
+
+#if GN_COUNTERS
+static inline uint filled_slots(__global const GnWideNode* node) {
+  uint i, count = 0u;
+  for (i = 0u; i < GN_WIDTH; ++i) count += node->links[i] != GN_NONE;
+  return count;
+}
+#define GN_COUNT_BOXES(node) walk->boxes += filled_slots(node)
+#else
+#define GN_COUNT_BOXES(node)
+#endif
+
+static inline void walk_closest(GnWideWalk* walk, const GnWideRay* ray, __global const GnWideNode* nodes,
+                                __global const GnTriangleBlock* blocks) {
+  uint links[GN_WIDE_STACK], keys[GN_WIDE_STACK];
+  uint height = 0u, current = 0u;
+  for (;;) {
+    uint met = 1u;
+    while (!(current & GN_LEAF_LINK)) {
+      __global const GnWideNode* node = nodes + current;
+      float8 entries;
+      GN_COUNT_BOXES(node);
+      met = boxes_met(ray, node, walk->limit, &entries);
+      if (met == 0u) break;
+      if ((met & (met - 1u)) == 0u) {
+        current = node->links[lowest_bit(met)];
+      } else {
+        const uint count = popcount(met);
+        put_by_distance(GN_MAX8(entries, (float8)0.0f), met, node->links, count, keys + height, links + height);
+        height += count - 1u;
+        current = links[height];
+      }
+    }
+    if (met != 0u) test_wide_leaf(walk, ray, blocks, current, 0);
+    // The next waiting node that is not beyond the best hit found since it was pushed.
+    do {
+      if (height == 0u) return;
+      height -= 1u;
+    } while (as_float(keys[height] & ~7u) > fmax(walk->limit, 0.0f));
+    current = links[height];
+  }
+}
+
+static inline void walk_any(GnWideWalk* walk, const GnWideRay* ray, __global const GnWideNode* nodes,
+                            __global const GnTriangleBlock* blocks) {
+  uint links[GN_WIDE_STACK];
+  uint height = 0u, current = 0u;
+  for (;;) {
+    uint met = 1u;
+    while (!(current & GN_LEAF_LINK)) {
+      __global const GnWideNode* node = nodes + current;
+      float8 entries;
+      uint largest;
+      GN_COUNT_BOXES(node);
+      met = boxes_met(ray, node, walk->limit, &entries);
+      if (met == 0u) break;
+      largest = highest_bit(met);
+      current = node->links[largest];
+      met ^= 1u << largest;
+      if (met != 0u) {
+        put_in_order(met, node->links, links + height);
+        height += popcount(met);
+      }
+      met = 1u;
+    }
+    if (met != 0u && test_wide_leaf(walk, ray, blocks, current, 1)) return;
+    if (height == 0u) return;
+    height -= 1u;
+    current = links[height];
+  }
+}
+
+static inline GnRay load_ray(__global const float8* rays, uint index) {
+  const float8 r = rays[index];
+  GnRay ray;
+  ray.origin[0] = r.s0;
+  ray.origin[1] = r.s1;
+  ray.origin[2] = r.s2;
+  ray.tmin = r.s3;
+  ray.direction[0] = r.s4;
+  ray.direction[1] = r.s5;
+  ray.direction[2] = r.s6;
+  ray.tmax = r.s7;
+  return ray;
+}
+
+static inline GnWideWalk start_walk(const GnRay* ray) {
+  GnWideWalk walk;
+  walk.best.t = INFINITY;
+  walk.best.u = 0.0f;
+  walk.best.v = 0.0f;
+  walk.best.primitive = GN_NONE;
+  walk.limit = gn_slab_limit(ray->tmax);
+  walk.found = 0u;
+  walk.boxes = 0u;
+  walk.triangles = 0u;
+  return walk;
+}
+
+static inline void store_counters(__global GnRayCounters* counters, uint index, const GnWideWalk* walk) {
+#if GN_COUNTERS
+  counters[index].boxes = walk->boxes;
+  counters[index].triangles = walk->triangles;
+#endif
+}
+
+// Closest hit of rays [0, count). invalid_rays counts rays that are not traceable; they miss.
+__kernel void trace_closest(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
+                            __global const float8* rays, __global float4* hits, volatile __global uint* invalid_rays,
+                            __global GnRayCounters* counters, uint count) {
+  const uint index = (uint)get_global_id(0);
+  if (index < count) {
+    const GnRay ray = load_ray(rays, index);
+    GnWideWalk walk = start_walk(&ray);
+    if (gn_ray_is_valid(&ray)) {
+      const GnWideRay wide = wide_ray(&ray);
+      walk_closest(&walk, &wide, nodes, blocks);
+    } else {
+      atomic_inc(invalid_rays);
+    }
+    hits[index] = (float4)(walk.best.t, walk.best.u, walk.best.v, as_float(walk.best.primitive));
+    store_counters(counters, index, &walk);
+  }
+}
+
+// Any hit of rays [0, count): occluded receives 1 or 0.
+__kernel void trace_any(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
+                        __global const float8* rays, __global uint* occluded, volatile __global uint* invalid_rays,
+                        __global GnRayCounters* counters, uint count) {
+  const uint index = (uint)get_global_id(0);
+  if (index < count) {
+    const GnRay ray = load_ray(rays, index);
+    GnWideWalk walk = start_walk(&ray);
+    if (gn_ray_is_valid(&ray)) {
+      const GnWideRay wide = wide_ray(&ray);
+      walk_any(&walk, &wide, nodes, blocks);
+    } else {
+      atomic_inc(invalid_rays);
+    }
+    occluded[index] = walk.found;
+    store_counters(counters, index, &walk);
+  }
+}

@@ -61,22 +61,22 @@ static inline uint lanes_not_above(float8 a, float8 b) {
   }
 #define GN_SIGNS8(a, b, c, d, e, f, g, h) ((int8)(-(a), -(b), -(c), -(d), -(e), -(f), -(g), -(h)))
 
-// Descending order of lanes 0 to 3; lanes 4 to 7 are undefined.
+// Ascending order of lanes 0 to 3; lanes 4 to 7 are undefined.
 static inline int8 sort_first_four(int8 keys) {
-  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(1, 0, 0, 1, 1, 0, 0, 1));
-  GN_EXCHANGE8(keys, keys.s23016745, GN_SIGNS8(1, 1, 0, 0, 1, 1, 0, 0));
-  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(1, 0, 1, 0, 1, 0, 1, 0));
+  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(0, 1, 1, 0, 0, 1, 1, 0));
+  GN_EXCHANGE8(keys, keys.s23016745, GN_SIGNS8(0, 0, 1, 1, 0, 0, 1, 1));
+  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(0, 1, 0, 1, 0, 1, 0, 1));
   return keys;
 }
 
-// Descending order of all lanes (bitonic: Batcher 1968).
+// Ascending order of all lanes (bitonic: Batcher 1968).
 static inline int8 sort_eight(int8 keys) {
-  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(1, 0, 0, 1, 1, 0, 0, 1));
-  GN_EXCHANGE8(keys, keys.s23016745, GN_SIGNS8(1, 1, 0, 0, 0, 0, 1, 1));
-  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(1, 0, 1, 0, 0, 1, 0, 1));
-  GN_EXCHANGE8(keys, keys.s45670123, GN_SIGNS8(1, 1, 1, 1, 0, 0, 0, 0));
-  GN_EXCHANGE8(keys, keys.s23016745, GN_SIGNS8(1, 1, 0, 0, 1, 1, 0, 0));
-  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(1, 0, 1, 0, 1, 0, 1, 0));
+  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(0, 1, 1, 0, 0, 1, 1, 0));
+  GN_EXCHANGE8(keys, keys.s23016745, GN_SIGNS8(0, 0, 1, 1, 1, 1, 0, 0));
+  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(0, 1, 0, 1, 1, 0, 1, 0));
+  GN_EXCHANGE8(keys, keys.s45670123, GN_SIGNS8(0, 0, 0, 0, 1, 1, 1, 1));
+  GN_EXCHANGE8(keys, keys.s23016745, GN_SIGNS8(0, 0, 1, 1, 0, 0, 1, 1));
+  GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(0, 1, 0, 1, 0, 1, 0, 1));
   return keys;
 }
 
@@ -84,21 +84,38 @@ static inline int8 sort_eight(int8 keys) {
 // be negative.
 static inline int8 entry_keys(float8 entries) { return (as_int8(entries) & ~7) | GN_LANES8; }
 
-// Writes the keys of the lanes in mask (two or more) in descending order to keys_out, and their links to links_out.
-// Both must have room for eight.
-static inline void put_by_distance(float8 entries, uint mask, __global const uint* links, uint count, uint* keys_out,
+// Of the lanes in mask, `count` of them and at least two, returns the link of the one with the least entry, and writes
+// the others' keys and links, farthest first, to keys_out and links_out. Both must have room for eight.
+static inline uint put_by_distance(float8 entries, uint mask, __global const uint* links, uint count, uint* keys_out,
                                    uint* links_out) {
 #if GN_EIGHT_AVX512
-  int8 keys = as_int8(__builtin_ia32_compresssi256_mask(entry_keys(entries), (int8)INT_MIN, (uchar)mask));
+  int8 keys =
+      as_int8(__builtin_ia32_compresssi256_mask(entry_keys(entries), (int8)INT_MAX, (uchar)mask));
+  if (count == 2u) {
+    const uint a = as_uint2(keys.lo.lo).x, b = as_uint2(keys.lo.lo).y;
+    const uint near = a < b ? a : b, far = a < b ? b : a;
+    keys_out[0] = far;
+    links_out[0] = links[far & 7u];
+    return links[near & 7u];
+  }
   keys = count <= 4u ? sort_first_four(keys) : sort_eight(keys);
-  vstore8(as_uint8(keys), 0, keys_out);
-  vstore8(as_uint8(__builtin_ia32_permvarsi256(as_int8(vload8(0, links)), keys)), 0, links_out);
+  {
+    const uint near = (uint)keys.s0;
+    keys = as_int8(__builtin_ia32_permvarsi256(keys, (int8)(count - 1u) - GN_LANES8));
+    vstore8(as_uint8(keys), 0, keys_out);
+    vstore8(as_uint8(__builtin_ia32_permvarsi256(as_int8(vload8(0, links)), keys)), 0, links_out);
+    return links[near & 7u];
+  }
 #else
   const int8 chosen = ((int8)mask & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
-  const int8 keys = sort_eight(chosen ? entry_keys(entries) : (int8)INT_MIN);
-  uint i;
-  vstore8(as_uint8(keys), 0, keys_out);
-  for (i = 0u; i < count; ++i) links_out[i] = links[keys_out[i] & 7u];
+  const int8 keys = sort_eight(chosen ? entry_keys(entries) : (int8)INT_MAX);
+  uint sorted[8], i;
+  vstore8(as_uint8(keys), 0, sorted);
+  for (i = 1u; i < count; ++i) {
+    keys_out[count - 1u - i] = sorted[i];
+    links_out[count - 1u - i] = links[sorted[i] & 7u];
+  }
+  return links[sorted[0] & 7u];
 #endif
 }
 

@@ -9,15 +9,17 @@
 namespace gnomon {
 namespace {
 
-// Several subtrees for every compute unit, none so large that it leaves the cache, and few enough for the lists.
+// Several subtrees for every compute unit, none so large that it leaves the cache, and few enough for the
+// lists.
 std::uint32_t triangles_per_task(const cl::DeviceInfo& device, std::uint32_t triangles) {
   const std::uint64_t least = std::max<std::uint64_t>(64, triangles / 4096);
   const std::uint64_t share = triangles / (16ULL * std::max(1U, device.compute_units));
-  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(share, least, std::max<std::uint64_t>(least, 8192)));
+  return static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(share, least, std::max<std::uint64_t>(least, 8192)));
 }
 
-// Loop turns that one triangle costs in the slowest kernel, at most; a device's vector unit may run 16 side by
-// side.
+// Loop turns that one triangle costs in the slowest kernel, at most; a device's vector unit may run 16 side
+// by side.
 constexpr std::uint64_t kTurnsPerTriangle = 1024;
 
 void heed_loop_limit(const cl::DeviceInfo& device, std::uint32_t triangles) {
@@ -50,8 +52,7 @@ class Collapser {
   template <typename... Arguments>
   void launch(const char* stage, const char* name, std::uint32_t items, const Arguments&... arguments) {
     if (items == 0) return;
-    const std::string options =
-        "-DGN_COLLAPSE_DEPTH=" + std::to_string((tree_.max_depth + 2 + 31) / 32 * 32);
+    const std::string options = "-DGN_COLLAPSE_DEPTH=" + std::to_string((tree_.max_depth + 2 + 31) / 32 * 32);
     const cl::Handle<cl_kernel> kernel = context_.programs().kernel({"collapse.cl"}, options, name);
     cl::set_arguments(kernel.get(), arguments...);
     times_.add(stage, cl::enqueue(context_.queue(), kernel.get(), items, 1));
@@ -136,8 +137,8 @@ class Collapser {
 
 }  // namespace
 
-DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree, const CollapseOptions& options,
-                              BuildReport* out) {
+DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
+                              const CollapseOptions& options, BuildReport* out) {
   const auto start = std::chrono::steady_clock::now();
   options.check();
   heed_loop_limit(context.device(), tree.triangle_count);

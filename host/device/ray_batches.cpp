@@ -31,6 +31,7 @@ std::uint32_t step_limit_for(const cl::DeviceInfo& device, std::uint32_t wanted)
 std::string TracePlan::program_options() const {
   if (wide) {
     return "-DGN_WIDE_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
+           " -DGN_RAYS_PER_ITEM=" + std::to_string(rays_per_item) +
            " -DGN_PORTABLE=" + (portable ? "1" : "0");
   }
   return "-DGN_STACK_SIZE=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
@@ -76,6 +77,8 @@ TracePlan plan_wide_trace(const cl::DeviceInfo& device, const TraceOptions& opti
   // A node leaves at most seven of its children waiting; the last vector written there is eight long.
   plan.stack_size = (7 * depth + 8 + 63) / 64 * 64;
   plan.most_passes = 1;
+  plan.rays_per_item = plan.work_group_size;
+  plan.work_group_size = 1;
   plan.wide = true;
   plan.portable = options.portable;
   return plan;

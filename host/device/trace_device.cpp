@@ -10,16 +10,20 @@ namespace {
 
 TraceFlavour flavour_for(const cl::DeviceInfo& device, const TraceOptions& options) {
   if (options.flavour != TraceFlavour::kAuto) return options.flavour;
-  return device.is_cpu && device.loop_limit == 0 && options.step_limit == 0 ? TraceFlavour::kWide : TraceFlavour::kThread;
+  return device.is_cpu && device.loop_limit == 0 && options.step_limit == 0 ? TraceFlavour::kWide
+                                                                            : TraceFlavour::kThread;
 }
 
 }  // namespace
 
 const char* to_string(TraceFlavour flavour) {
   switch (flavour) {
-    case TraceFlavour::kAuto: return "auto";
-    case TraceFlavour::kThread: return "thread";
-    case TraceFlavour::kWide: return "wide";
+    case TraceFlavour::kAuto:
+      return "auto";
+    case TraceFlavour::kThread:
+      return "thread";
+    case TraceFlavour::kWide:
+      return "wide";
   }
   return "?";
 }
@@ -37,8 +41,9 @@ Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOpt
 Tracer::Tracer(const cl::Context& context, const DeviceWideBvh& tree, const TraceOptions& options)
     : context_(context), flavour_(TraceFlavour::kWide) {
   if (options.flavour == TraceFlavour::kThread) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "the thread flavour traces binary trees, not wide ones; give it the tree before the collapse");
+    throw Error(
+        ErrorCode::kInvalidArgument,
+        "the thread flavour traces binary trees, not wide ones; give it the tree before the collapse");
   }
   trace_wide(tree, options);
 }
@@ -73,14 +78,15 @@ Tracer::Tracer(Tracer&&) noexcept = default;
 cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                      const Passes& passes, std::uint32_t pass,
                                      std::span<const cl_event> wait_for) const {
-  cl::set_arguments(kernel.get(), nodes_, triangles_, launch.rays, launch.answers, invalid_,
-                    launch.counters, launch.count);
+  cl::set_arguments(kernel.get(), nodes_, triangles_, launch.rays, launch.answers, invalid_, launch.counters,
+                    launch.count);
   if (plan_->step_limit != 0) {
     cl::set_arguments_from(kernel.get(), 7, passes.states, passes.waiting, passes.entries, passes.paused,
                            pass);
   }
   const std::size_t local = plan_->work_group_size;
-  const std::size_t global = (std::max(launch.count, 1U) + local - 1) / local * local;
+  const std::size_t rays = std::size_t{plan_->rays_per_item} * local;
+  const std::size_t global = (std::max(launch.count, 1U) + rays - 1) / rays * local;
   return cl::enqueue(context_.queue(), kernel.get(), global, local, wait_for);
 }
 

@@ -28,7 +28,7 @@ enum class TraceFlavour : std::uint32_t {
 
 struct TraceOptions {
   TraceFlavour flavour = TraceFlavour::kAuto;
-  bool portable = false;  // wide: OpenCL C alone, without the device compiler's own instructions
+  bool portable = false;               // wide: OpenCL C alone, without the device compiler's own instructions
   bool counters = false;               // also count boxes and triangles per ray; slower
   std::uint32_t work_group_size = 64;  // power of two up to the device's limit
   // A ray's nodes and triangles per launch; rays that need more go on in another launch. 0: all in one,

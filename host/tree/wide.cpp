@@ -74,8 +74,8 @@ class Collapse {
     return gn_forest_of(bvh_.nodes.data(), forests_.data(), node, costs_.block);
   }
 
-  // Writes the wide node at `place`; its inner children get neighbouring places, then each is written with all
-  // that is below it. Depth is that of the tree: recursion is shallow.
+  // Writes the wide node at `place`; its inner children get neighbouring places, then each is written with
+  // all that is below it. Depth is that of the tree: recursion is shallow.
   void emit(std::uint32_t root, std::uint32_t place, std::uint32_t depth) {
     GnSlots slots;
     gn_open_wide_node(bvh_.nodes.data(), forests_.data(), root, costs_, &slots);
@@ -196,8 +196,7 @@ std::string tree_hash(const WideBvh& wide) {
   XXH3_64bits_update(&state, wide.nodes.data(), wide.nodes.size() * sizeof(WideNode));
   XXH3_64bits_update(&state, wide.blocks.data(), wide.blocks.size() * sizeof(TriangleBlock));
   char text[17];
-  std::snprintf(text, sizeof text, "%016llx",
-                static_cast<unsigned long long>(XXH3_64bits_digest(&state)));
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(XXH3_64bits_digest(&state)));
   return text;
 }
 

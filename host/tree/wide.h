@@ -40,8 +40,8 @@ struct WideBvh {
 
 [[noreturn]] void throw_leaf_too_large(std::uint32_t triangles);
 
-// What a wide tree looks like; expected numbers are those of a ray that meets the root's box, under the surface
-// area heuristic.
+// What a wide tree looks like; expected numbers are those of a ray that meets the root's box, under the
+// surface area heuristic.
 struct WideStats {
   double expected_nodes = 0.0;
   double expected_blocks = 0.0;

@@ -53,6 +53,14 @@ static inline uint lanes_not_above(float8 a, float8 b) {
 #endif
 }
 
+static inline uint lanes_above(float8 a, float8 b) {
+#if GN_EIGHT_AVX512
+  return (uint)__builtin_ia32_cmpps256_mask(a, b, 30, (uchar)255);  // greater, quiet
+#else
+  return bits_of_lanes(a > b);
+#endif
+}
+
 // One stage of a sorting network: lanes where `upper` is set keep the larger of themselves and their partner.
 #define GN_EXCHANGE8(keys, partner, upper)                              \
   {                                                                     \

@@ -167,9 +167,9 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
   const float8 q = GN_MAX8(px, py) + 9.5367432e-07f * z;
   const float8 bound = 2.3841858e-06f * q * (q + z) + 1e-36f;
   const float8 largest = GN_MAX8(GN_MAX8(u, v), w), smallest = GN_MIN8(GN_MIN8(u, v), w);
-  uint met = ~bits_of_lanes((largest > bound) & (smallest < -bound)) & (255u >> (8u - count));
+  uint met = ~(lanes_above(largest, bound) & lanes_above(-bound, smallest)) & (255u >> (8u - count));
   if (met != 0u) {
-    const uint inside = bits_of_lanes((smallest > bound) | (largest < -bound));
+    const uint inside = lanes_above(smallest, bound) | lanes_above(-bound, largest);
     const float8 share = 1.0f / (u + v + w);
     const float8 spread = GN_MAX8(GN_MAX8(az, bz), cz) - GN_MIN8(GN_MIN8(az, bz), cz);
     const float8 inverse = (float8)frame->inverse[kz];

@@ -115,6 +115,7 @@ class Reproduction {
     if (known != scenes_.end()) return known->second;
     SceneOptions source;
     source.source = scene_source_of(name);
+    source.keep_flat = true;
     if (!source.source.starts_with("gen:")) source.source = options_.scenes + "/" + source.source;
     try {
       return scenes_.emplace(name, prepare_scene(load_scene(source, console_), builder())).first->second;

@@ -17,6 +17,7 @@
 #include "gnomon/measure/published_builder.h"
 #include "gnomon/measure/set_up.h"
 #include "gnomon/scene/scene.h"
+#include "gnomon/tree/build_reference.h"
 
 namespace gnomon {
 
@@ -29,7 +30,8 @@ struct ReproduceOptions {
   std::uint64_t seed = 1;
 };
 
-// A scene and its global tree, which all its set-ups share.
+// A scene and its global tree, which all its set-ups share. The thesis' program kept triangles without area
+// (InvalidPolicy::kKeepFlat): they cost in its trees although nothing hits them. Ours leave them out.
 struct ReproduceScene {
   Scene scene;
   std::string hash;
@@ -52,6 +54,9 @@ struct TreeRun {
   std::uint64_t triangles = 0;
   BvhStats stats;
   double build_ms = 0.0;
+  double planes_tried = 0.0;  // axes whose planes were tried, an inner node (thesis: attempted planes)
+  std::array<double, 3> axis_share{};           // of inner nodes that are divided along x, y, z
+  std::array<double, 3> axis_fallback_share{};  // of inner nodes whose policy fell back on x, y, z
   MeanCost local;
   double predicted_published = 0.0;  // PAH as the thesis measures it: by area in the window's plane
   double predicted_matching = 0.0;   // by the rays' own measure

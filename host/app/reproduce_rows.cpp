@@ -118,6 +118,10 @@ Json to_json(const ReproduceSummary& summary) {
   Json out;
   out["compared"] = summary.compared(false);
   out["median_deviation"] = summary.median_deviation(false);
+  out["rms_standard_errors"] = summary.rms_errors_off();
+  out["sah_estimates_within"] = {{"0.00001", summary.estimates_within(1e-5)},
+                                 {"0.001", summary.estimates_within(1e-3)},
+                                 {"0.01", summary.estimates_within(1e-2)}};
   out["compared_flagged"] = summary.compared(true);
   out["median_deviation_flagged"] = summary.median_deviation(true);
   out["large_deviations"] = Json::array();
@@ -146,6 +150,8 @@ Json to_json(const ReproduceSummary& summary) {
          {"mean", errors.mean},
          {"median", errors.median},
          {"max", errors.max},
+         {"noise", errors.noise},
+         {"max_beyond_noise", errors.max_beyond_noise},
          {"count", errors.count}});
   }
   return out;

@@ -1,6 +1,7 @@
 // The thesis' cost, what measures predict of it, and how siblings overlap: by hand, and against one another.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 #include "gnomon/areas/area_rays.h"
 #include "gnomon/measure/all_pierced.h"
@@ -141,6 +142,11 @@ TEST_CASE("overlaps of levels are summed before they are divided, and what the w
   REQUIRE(overlap(4, 1) == Approx(1.0 / 2));
   REQUIRE(overlap(4, 2) == Approx(1.0 / (2 + 1)));
   REQUIRE(overlap(4, gnomon::kAllLevels) == Approx(1.0 / 3));
+  // The same where it is the right child that divides again.
+  Bvh mirrored = tree;
+  std::swap(mirrored.nodes[1], mirrored.nodes[2]);
+  REQUIRE(gnomon::sibling_overlap(mirrored, window_over(4, 1), RayMeasure::kParallel, 1) == Approx(1.0 / 2));
+  REQUIRE(gnomon::sibling_overlap(mirrored, window_over(4, 1), RayMeasure::kParallel, 2) == Approx(1.0 / 3));
   // A window from x = 1.5 to 2.5: half of what they share is seen, and the smaller is all shared.
   REQUIRE(overlap(0.5, 1) == Approx(1.0));
   REQUIRE(gnomon::sibling_overlap({}, window_over(4, 1), RayMeasure::kParallel) == 0.0);

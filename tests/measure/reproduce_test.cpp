@@ -78,6 +78,13 @@ TEST_CASE("every variant runs once, ours for every measure of rays") {
   REQUIRE(point.trees[7].rays == RayMeasure::kNearPlane);
   REQUIRE(point.trees[9].rays == RayMeasure::kSolidAngle);
   REQUIRE(point.predictions.size() == 3 * 4);
+  // On yaw and pitch's tree: by its own measure, by the near plane as published, by solid angle, by surface.
+  REQUIRE(point.predictions[0].predicted == Approx(point.trees[6].predicted_matching));
+  REQUIRE(point.predictions[1].measure == RayMeasure::kNearPlane);
+  REQUIRE(point.predictions[1].predicted == Approx(point.trees[6].predicted_published));
+  REQUIRE(point.predictions[1].predicted != Approx(point.predictions[0].predicted));
+  REQUIRE(point.predictions[2].predicted != Approx(point.predictions[0].predicted));
+  REQUIRE(point.predictions[3].predicted == Approx(point.trees[6].predicted_surface));
   // A set-up with another window for one variant repeats nothing else.
   const auto other = run_set_up(plane_set_up({"Longest"}), scene, few(), build);
   REQUIRE(names_of(other) == Names{"Longest"});

@@ -171,7 +171,7 @@ static inline GnSplit choose_split(const GnHeuristic* heuristic, int how, const 
   return cheapest_split(heuristic, how, node, bins, counts, best_of_axis);
 #else
   if (GN_LOCAL_ID == 0u) {
-    best_of_axis[0] = gn_policy_split(heuristic, how, node, bins, counts, GN_PLANES, GN_BINS);
+    best_of_axis[0] = gn_policy_split(heuristic, how, node, bins, counts, GN_PLANES, GN_BINS, 0);
   }
   GN_GROUP_BARRIER();
   return best_of_axis[0];

@@ -23,8 +23,10 @@ struct DeviceOptions {
 struct SceneOptions {
   std::string source;  // a file or gen:NAME[:TRIANGLES[:SEED]]
   std::string invalid = "drop";
+  bool keep_flat = false;  // not on the command line
   [[nodiscard]] InvalidPolicy policy() const {
-    return invalid == "reject" ? InvalidPolicy::kReject : InvalidPolicy::kDrop;
+    if (invalid == "reject") return InvalidPolicy::kReject;
+    return keep_flat ? InvalidPolicy::kKeepFlat : InvalidPolicy::kDrop;
   }
 };
 

@@ -12,11 +12,11 @@
 #include "device_choice.h"
 #include "document.h"
 #include "gnomon/device/build_device.h"
-#include "gnomon/measure/prediction.h"
 #include "gnomon/tree/build_reference.h"
 #include "interrupt.h"
 #include "numbers.h"
 #include "reproduce_rows.h"
+#include "reproduce_text.h"
 #include "scene_source.h"
 
 namespace gnomon::app {
@@ -115,6 +115,7 @@ class Reproduction {
     if (known != scenes_.end()) return known->second;
     SceneOptions source;
     source.source = scene_source_of(name);
+    source.keep_flat = true;
     if (!source.source.starts_with("gen:")) source.source = options_.scenes + "/" + source.source;
     try {
       return scenes_.emplace(name, prepare_scene(load_scene(source, console_), builder())).first->second;
@@ -187,58 +188,6 @@ class Reproduction {
                 "total", "global", "hits", "closest boxes", "any boxes"}};
 };
 
-std::string percent(double share) {
-  return fixed(100.0 * share, 1) + " %";
-}
-
-std::string duel_text(const Duel& duel) {
-  return "geomean " + fixed(duel.geomean, 3) + ", lower in " + std::to_string(duel.wins) + " of " +
-         std::to_string(duel.count) + ", worst " + fixed(duel.worst, 2);
-}
-
-std::string deviations_text(const ReproduceSummary& summary) {
-  if (summary.comparisons().empty()) return {};
-  Facts facts;
-  facts.add(
-      "median deviation from the published local cost",
-      percent(summary.median_deviation(false)) + " of " + std::to_string(summary.compared(false)) + " rows");
-  if (summary.compared(true) > 0)
-    facts.add("of rows that are not what they were published as",
-              percent(summary.median_deviation(true)) + " of " + std::to_string(summary.compared(true)));
-  std::string text = facts.text();
-  const auto large = summary.large_deviations();
-  if (large.empty()) return text;
-  Table table({"more than 12 % off", "variant", "published", "measured", "ratio", "flag"});
-  for (const Comparison& row : large)
-    table.add({row.set_up, row.variant, fixed(row.published, 1), fixed(row.measured, 1),
-               fixed(row.ratio(), 3), row.flag});
-  return text + "\n" + table.text();
-}
-
-std::string errors_text(const ReproduceSummary& summary, const std::vector<PredictionRun>& wide) {
-  Table table({"rays", "predicted by", "mean error", "median", "max", "set-ups"});
-  for (const PredictionErrors& e : summary.prediction_errors())
-    table.add({std::string(to_string(e.rays)), e.surface ? "surface area" : std::string(to_string(e.measure)),
-               percent(e.mean), percent(e.median), percent(e.max), std::to_string(e.count)});
-  for (const PredictionRun& run : wide)
-    table.add({std::string(to_string(run.rays)) + ", 130x45",
-               run.surface ? "surface area" : std::string(to_string(run.measure)),
-               percent(prediction_error(run.real.mean, run.predicted)), "", "", "1"});
-  return table.text();
-}
-
-std::string summary_text(const Reproduction& done) {
-  const ReproduceSummary& summary = done.summary();
-  Facts facts;
-  for (const Duel& duel : summary.variant_duels())
-    facts.add(duel.builder + " over Standard", duel_text(duel));
-  if (summary.three_axes_duel().count > 0)
-    facts.add("PAH3 over SAH3, the thesis' rays", duel_text(summary.three_axes_duel()));
-  for (const Duel& duel : summary.three_axes_duels_by_measure())
-    facts.add("PAH3 over SAH3, rays " + std::string(to_string(duel.rays)), duel_text(duel));
-  return deviations_text(summary) + "\n" + facts.text() + "\n" + errors_text(summary, done.wide());
-}
-
 int run(const Options& options, Console& console) {
   Reproduction reproduction(options, console);
   reproduction.run();
@@ -252,7 +201,7 @@ int run(const Options& options, Console& console) {
   document["summary"] = to_json(reproduction.summary());
   document["rows"] = reproduction.documents();
   console.print(document);
-  console.print(reproduction.table() + "\n" + summary_text(reproduction));
+  console.print(reproduction.table() + "\n" + summary_text(reproduction.summary(), reproduction.wide()));
   return 0;
 }
 

@@ -27,6 +27,11 @@ Json overlaps_of(const std::array<double, 5>& overlap) {
   return {{"4", overlap[0]}, {"7", overlap[1]}, {"10", overlap[2]}, {"15", overlap[3]}, {"all", overlap[4]}};
 }
 
+// Of the three axes.
+Json json_of(const std::array<double, 3>& shares) {
+  return {{"x", shares[0]}, {"y", shares[1]}, {"z", shares[2]}};
+}
+
 Json json_of(const PublishedRow& row) {
   return {{"flag", row.flag},
           {"local", row.local_cost},
@@ -36,6 +41,7 @@ Json json_of(const PublishedRow& row) {
           {"pah", row.predicted_pah},
           {"sah", row.predicted_sah},
           {"max_level", row.max_level},
+          {"planes_tried", row.planes_tried},
           {"overlap",
            overlaps_of({row.overlap_4, row.overlap_7, row.overlap_10, row.overlap_15, row.overlap_all})}};
 }
@@ -74,6 +80,9 @@ Json tree_row(const Json& start, const TreeRun& run, const PublishedRow* publish
   row["max_depth"] = run.stats.max_depth;
   row["largest_leaf"] = run.stats.largest_leaf;
   row["build_ms"] = run.build_ms;
+  row["planes_tried"] = run.planes_tried;
+  row["axis_share"] = json_of(run.axis_share);
+  row["axis_fallback_share"] = json_of(run.axis_fallback_share);
   row["local"] = json_of(run.local);
   row["predicted"] = predictions_of(run);
   row["closest"] = json_of(run.closest);
@@ -109,6 +118,10 @@ Json to_json(const ReproduceSummary& summary) {
   Json out;
   out["compared"] = summary.compared(false);
   out["median_deviation"] = summary.median_deviation(false);
+  out["rms_standard_errors"] = summary.rms_errors_off();
+  out["sah_estimates_within"] = {{"0.00001", summary.estimates_within(1e-5)},
+                                 {"0.001", summary.estimates_within(1e-3)},
+                                 {"0.01", summary.estimates_within(1e-2)}};
   out["compared_flagged"] = summary.compared(true);
   out["median_deviation_flagged"] = summary.median_deviation(true);
   out["large_deviations"] = Json::array();
@@ -137,6 +150,8 @@ Json to_json(const ReproduceSummary& summary) {
          {"mean", errors.mean},
          {"median", errors.median},
          {"max", errors.max},
+         {"noise", errors.noise},
+         {"max_beyond_noise", errors.max_beyond_noise},
          {"count", errors.count}});
   }
   return out;

@@ -12,6 +12,9 @@ namespace {
 constexpr float kFacingThreshold = 0.4F;
 constexpr float kLongestThreshold = 0.99F;
 constexpr std::size_t kCells = 32;  // of the octree, per axis: depth 5
+// How far outside the octree's root box the program still finds a point in it, into the nearest cell: its
+// TOLERANCE, in units of the scene whatever their size. Whole walls lie that close to some of its areas.
+constexpr double kRootTolerance = 0.01;
 
 bool uses_projected_area(PublishedVariant variant, AreaKind kind) {
   return variant == PublishedVariant::kFull || variant == PublishedVariant::kTrueLongest ||
@@ -33,14 +36,23 @@ BuildOptions published_base() {
   return options;
 }
 
+Box3d grown(Box3d box, double by) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.lo[k] -= by;
+    box.hi[k] += by;
+  }
+  return box;
+}
+
 // Which cells of the octree's lowest level meet the region, found when first asked.
 class Cells {
  public:
-  explicit Cells(const InfluenceArea& area) : area_(area), box_(area.enclosing_box()) {}
+  explicit Cells(const InfluenceArea& area)
+      : area_(area), box_(area.enclosing_box()), tolerant_box_(grown(box_, kRootTolerance)) {}
 
   [[nodiscard]] bool has(const float point[3]) {
     const Vec3d p{point[0], point[1], point[2]};
-    if (!contains(box_, p)) return false;
+    if (!contains(tolerant_box_, p)) return false;
     std::array<std::size_t, 3> at{};
     Box3d cell;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -57,6 +69,7 @@ class Cells {
  private:
   const InfluenceArea& area_;
   Box3d box_;
+  Box3d tolerant_box_;
   std::vector<std::optional<bool>> known_ = std::vector<std::optional<bool>>(kCells * kCells * kCells);
 };
 

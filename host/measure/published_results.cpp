@@ -94,7 +94,8 @@ PublishedResults read_published_results(const std::filesystem::path& file) {
                      number("overlap_to_lvl10"),
                      number("overlap_to_lvl15"),
                      number("overlap_to_lvl100"),
-                     number("max_level")};
+                     number("max_level"),
+                     number("planes_tried_per_internal_node")};
   }
   return out;
 }

@@ -23,6 +23,7 @@ struct PublishedRow {
   double overlap_15 = 0.0;
   double overlap_all = 0.0;
   double max_level = 0.0;
+  double planes_tried = 0.0;  // axes, an inner node
 };
 
 // By key_of.

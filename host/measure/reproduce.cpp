@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 
 #include "gnomon/areas/area_rays.h"
 #include "gnomon/areas/membership.h"
 #include "gnomon/measure/area_measure.h"
 #include "gnomon/measure/overlap.h"
 #include "gnomon/measure/prediction.h"
+#include "gnomon/scene/triangle_check.h"
 #include "gnomon/tree/trace_reference.h"
 
 namespace gnomon {
@@ -25,6 +27,14 @@ Triangles chosen(std::span<const GnTriangle> triangles, const std::vector<std::u
     throw Error(ErrorCode::kBadScene, std::string("no triangle of the scene is in the influence area (") +
                                           how + "): is it the scene that the set-up means?");
   return out;
+}
+
+// Every triangle that touches the area, but for those without area.
+Triangles exact_members(const InfluenceArea& area, std::span<const GnTriangle> triangles) {
+  Triangles solid;
+  std::copy_if(triangles.begin(), triangles.end(), std::back_inserter(solid),
+               [](const GnTriangle& t) { return fault_of(t) == TriangleFault::kNone; });
+  return chosen(solid, members(area, solid), "exact");
 }
 
 // Three axes, leaves by the cost that is measured.
@@ -120,6 +130,21 @@ Bvh build_timed(const TreeBuilder& build, const Triangles& triangles, const Buil
   return tree;
 }
 
+// Recounted by the reference builder, which makes the same tree as a device but can say how.
+void add_effort(TreeRun& run, const Triangles& triangles, const BuildOptions& options) {
+  SplitTally tally;
+  static_cast<void>(build_reference(triangles, options, &tally));
+  if (tally.inner_nodes == 0) return;
+  const auto share = [&](std::uint64_t count) {
+    return static_cast<double>(count) / static_cast<double>(tally.inner_nodes);
+  };
+  run.planes_tried = share(tally.axes_tried);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    run.axis_share[axis] = share(tally.split_on[axis]);
+    run.axis_fallback_share[axis] = share(tally.fallback_on[axis]);
+  }
+}
+
 PublishedVariant variant_named(const std::string& name) {
   for (const PublishedVariant variant : {PublishedVariant::kFull, PublishedVariant::kFacing,
                                          PublishedVariant::kStandard, PublishedVariant::kLongest}) {
@@ -152,6 +177,7 @@ void run_published(SetUpReport& report, const SetUp& set_up, const Batch& batch,
     run.heuristics = heuristics_of(variant, area.kind());
     run.members = "octree-vertices";
     run.build_ms = ms;
+    add_effort(run, triangles, options);
     report.trees.push_back(std::move(run));
   }
 }
@@ -182,7 +208,7 @@ void add_predictions(std::vector<PredictionRun>& out, const Bvh& tree, const Inf
 void run_ours(SetUpReport& report, const InfluenceArea& area, const Batch& published,
               const ReproduceScene& scene, const ReproduceOptions& options, const TreeBuilder& build,
               const Progress& progress) {
-  const Triangles triangles = chosen(scene.scene.triangles, members(area, scene.scene.triangles), "exact");
+  const Triangles triangles = exact_members(area, scene.scene.triangles);
   const BuiltTree sah = build_three_axes(build, triangles, surface_area_measure());
   for (const RayMeasure measure : ray_measures_of(area)) {
     const Batch batch = measure == published.measure ? published : batch_of(area, measure, scene, options);
@@ -193,6 +219,7 @@ void run_ours(SetUpReport& report, const InfluenceArea& area, const Batch& publi
       run.heuristics = heuristic_name(built->options);
       run.members = "exact";
       run.build_ms = built->ms;
+      add_effort(run, triangles, built->options);
       report.trees.push_back(std::move(run));
     }
     add_predictions(report.predictions, pah.tree, area, measure, options);
@@ -228,7 +255,7 @@ SetUpReport run_set_up(const SetUp& set_up, const ReproduceScene& scene, const R
 
 std::vector<PredictionRun> check_predictions(const InfluenceArea& area, const ReproduceScene& scene,
                                              const ReproduceOptions& options, const TreeBuilder& build) {
-  const Triangles triangles = chosen(scene.scene.triangles, members(area, scene.scene.triangles), "exact");
+  const Triangles triangles = exact_members(area, scene.scene.triangles);
   std::vector<PredictionRun> out;
   for (const RayMeasure measure : ray_measures_of(area)) {
     const BuiltTree pah = build_three_axes(build, triangles, area_measure(area, measure));

@@ -2,11 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gnomon/base/stats.h"
 #include "gnomon/measure/prediction.h"
 
 namespace gnomon {
+
+double Comparison::errors_off() const {
+  if (measured == published) return 0.0;
+  const double of_difference = std::sqrt(2.0) * standard_error;
+  return of_difference > 0.0 ? (measured - published) / of_difference
+                             : std::numeric_limits<double>::infinity();
+}
 
 void ReproduceSummary::add(const SetUp& set_up, const SetUpReport& report,
                            const PublishedResults& published) {
@@ -15,8 +23,9 @@ void ReproduceSummary::add(const SetUp& set_up, const SetUpReport& report,
     runs_.push_back({set_ups_, run.rays == thesis, run.rays, run.builder, run.local.mean});
     const auto row = published.find(key_of(set_up, run.builder));
     if (row == published.end()) continue;
-    comparisons_.push_back(
-        {set_up.label(), run.builder, row->second.flag, row->second.local_cost, run.local.mean});
+    comparisons_.push_back({set_up.label(), run.builder, row->second.flag, row->second.local_cost,
+                            run.local.mean, run.local.standard_error, row->second.predicted_sah,
+                            run.predicted_surface});
   }
   predictions_.insert(predictions_.end(), report.predictions.begin(), report.predictions.end());
   ++set_ups_;
@@ -42,6 +51,22 @@ std::vector<Comparison> ReproduceSummary::large_deviations() const {
     if (row.deviation() > kLargeDeviation) out.push_back(row);
   }
   return out;
+}
+
+double ReproduceSummary::rms_errors_off() const {
+  std::vector<double> squares;
+  for (const Comparison& row : comparisons_) {
+    if (row.flag.empty()) squares.push_back(row.errors_off() * row.errors_off());
+  }
+  return std::sqrt(mean_of(squares).mean);
+}
+
+std::uint64_t ReproduceSummary::estimates_within(double bound) const {
+  return static_cast<std::uint64_t>(
+      std::count_if(comparisons_.begin(), comparisons_.end(), [&](const Comparison& row) {
+        return row.flag.empty() &&
+               std::abs(row.measured_sah - row.published_sah) <= bound * row.published_sah;
+      }));
 }
 
 template <typename Wanted>
@@ -93,23 +118,29 @@ std::vector<Duel> ReproduceSummary::three_axes_duels_by_measure() const {
 std::vector<PredictionErrors> ReproduceSummary::prediction_errors() const {
   std::vector<PredictionErrors> out;
   std::vector<std::vector<double>> errors;
+  std::vector<std::vector<double>> noise;
   for (const PredictionRun& run : predictions_) {
     auto at = std::find_if(out.begin(), out.end(), [&](const PredictionErrors& e) {
       return e.rays == run.rays && e.measure == run.measure && e.surface == run.surface;
     });
     if (at == out.end()) {
-      out.push_back({run.rays, run.measure, run.surface, 0.0, 0.0, 0.0, 0});
+      out.push_back({run.rays, run.measure, run.surface, 0.0, 0.0, 0.0, 0.0, 0.0, 0});
       errors.emplace_back();
+      noise.emplace_back();
       at = out.end() - 1;
     }
-    errors[static_cast<std::size_t>(at - out.begin())].push_back(
-        prediction_error(run.real.mean, run.predicted));
+    const auto place = static_cast<std::size_t>(at - out.begin());
+    errors[place].push_back(prediction_error(run.real.mean, run.predicted));
+    const double own_noise = run.predicted > 0.0 ? run.real.standard_error / run.predicted : 0.0;
+    noise[place].push_back(own_noise);
+    at->max_beyond_noise = std::max(at->max_beyond_noise, errors[place].back() - 2.0 * own_noise);
   }
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Spread spread = spread_of(errors[i]);
     out[i].mean = mean_of(errors[i]).mean;
     out[i].median = spread.median;
     out[i].max = spread.max;
+    out[i].noise = mean_of(noise[i]).mean;
     out[i].count = spread.count;
   }
   return out;

@@ -18,8 +18,14 @@ struct Comparison {
   std::string flag;  // of the published row
   double published = 0.0;
   double measured = 0.0;
+  double standard_error = 0.0;  // of measured
+  double published_sah = 0.0;   // SAH's estimate of the tree: what differs in it is no sampling noise
+  double measured_sah = 0.0;
   [[nodiscard]] double ratio() const { return measured / published; }
   [[nodiscard]] double deviation() const { return ratio() > 1.0 ? ratio() - 1.0 : 1.0 - ratio(); }
+  // How far off in standard errors of the difference, when what was published is a mean over as many rays.
+  // Over rows of equal trees its square is 1 in the mean.
+  [[nodiscard]] double errors_off() const;
 };
 
 // Costs of one builder over those of another on the same rays. A win is a lower cost.
@@ -41,6 +47,8 @@ struct PredictionErrors {
   double mean = 0.0;
   double median = 0.0;
   double max = 0.0;
+  double noise = 0.0;  // mean of the real costs' relative standard errors: what sampling alone would make
+  double max_beyond_noise = 0.0;  // of |real - predicted| less two standard errors, relative like the others
   std::uint64_t count = 0;
 };
 
@@ -55,6 +63,10 @@ class ReproduceSummary {
   [[nodiscard]] double median_deviation(bool flagged) const;
   [[nodiscard]] std::uint64_t compared(bool flagged) const;
   [[nodiscard]] std::vector<Comparison> large_deviations() const;
+  // Of the rows that are what they say: the root of the mean square of errors_off, and how many have SAH's
+  // estimate within a relative `bound` of the published.
+  [[nodiscard]] double rms_errors_off() const;
+  [[nodiscard]] std::uint64_t estimates_within(double bound) const;
   [[nodiscard]] const std::vector<Comparison>& comparisons() const { return comparisons_; }
   // Published variants against Standard.
   [[nodiscard]] std::vector<Duel> variant_duels() const;

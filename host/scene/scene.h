@@ -72,6 +72,8 @@ struct Scene {
 enum class InvalidPolicy {
   kReject,  // the first one is an Error{kBadScene} naming its place
   kDrop,    // leave it out and count it in the report
+  // As kDrop, but triangles of zero area stay. Nothing hits them; trees of programs that keep them have them.
+  kKeepFlat,
 };
 
 // Coordinates beyond this magnitude are invalid: box areas times counts stay finite in float below it.

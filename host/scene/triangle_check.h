@@ -32,7 +32,8 @@ class TriangleSink {
   template <typename Place>
   bool add(const Triangle& triangle, std::uint32_t material_id, const Place& place) {
     const TriangleFault fault = fault_of(triangle);
-    if (fault != TriangleFault::kNone) {
+    const bool kept = fault == TriangleFault::kZeroArea && policy_ == InvalidPolicy::kKeepFlat;
+    if (fault != TriangleFault::kNone && !kept) {
       if (policy_ == InvalidPolicy::kReject) reject(fault, place());
       count(fault);
       return false;

@@ -21,6 +21,7 @@ struct Builder {
   std::vector<Node> sparse;
   std::vector<bool> is_split;
   std::vector<GnTask> open;
+  SplitTally tally;
 };
 
 GnPrimitive primitive_of(const Triangle& triangle, std::uint32_t index) {
@@ -122,18 +123,20 @@ GnNodeView view_of(const Builder& builder, const GnTask& task) {
   return node;
 }
 
-GnSplit choose_split(const Builder& builder, const GnNodeView& node, int how, const GnTask& task) {
+GnSplit choose_split(const Builder& builder, const GnNodeView& node, int how, const GnTask& task,
+                     GnPolicyEffort& effort) {
   GnSplit best = gn_no_split();
   if (node.count < 2 || task.depth >= builder.heuristic.rules.median_depth) return best;
   const std::uint32_t bins = builder.options.bins;
   const std::uint32_t planes = bins - 1 - (builder.options.published_leaves.on ? 1 : 0);
   const Bins binned = bins_of(builder, task, node.usable);
   if (builder.options.axes != AxisPolicy::kAll) {
-    return gn_policy_split(&builder.heuristic, how, &node, binned.boxes.data(), binned.counts.data(),
-                           planes, bins);
+    return gn_policy_split(&builder.heuristic, how, &node, binned.boxes.data(), binned.counts.data(), planes,
+                           bins, &effort);
   }
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     if ((node.usable >> axis & 1U) == 0) continue;
+    effort.axes += 1;
     const GnSplit split = gn_sweep_axis(&builder.heuristic.measure, how, &binned.boxes[axis * bins],
                                         &binned.counts[axis * bins], planes, bins, axis, node.count);
     if (split.axis != GN_NONE && (best.axis == GN_NONE || gn_split_is_better(&split, &best, node.count)))
@@ -151,6 +154,12 @@ std::uint32_t partition(Builder& builder, const GnTask& task, const GnSplit& spl
     return bin_on_axis(builder, p, task, split.axis) <= split.plane;
   });
   return static_cast<std::uint32_t>(middle - builder.primitives.begin());
+}
+
+void count_split(SplitTally& tally, const GnSplit& split, const GnPolicyEffort& effort) {
+  tally.inner_nodes += 1;
+  if (split.axis != GN_NONE) tally.split_on[split.axis] += 1;
+  if (effort.fallback_axis != GN_NONE) tally.fallback_on[effort.fallback_axis] += 1;
 }
 
 void push_child(Builder& builder, const GnTask& task, float probability) {
@@ -172,7 +181,9 @@ GnTask task_of(std::uint32_t begin, std::uint32_t end, std::uint32_t slot, std::
 void build_node(Builder& builder, const GnTask& task) {
   const GnNodeView view = view_of(builder, task);
   const int how = gn_measure_how(&builder.heuristic.measure, task.lo, task.hi);
-  const GnSplit split = choose_split(builder, view, how, task);
+  GnPolicyEffort effort{0, GN_NONE};
+  const GnSplit split = choose_split(builder, view, how, task, effort);
+  builder.tally.axes_tried += effort.axes;
   Node node{};
   std::copy_n(task.lo, 3, node.lo);
   std::copy_n(task.hi, 3, node.hi);
@@ -180,6 +191,7 @@ void build_node(Builder& builder, const GnTask& task) {
     node.first = task.begin;
     node.count = task.end - task.begin;
   } else {
+    count_split(builder.tally, split, effort);
     const std::uint32_t middle = partition(builder, task, split);
     node.first = 2 * middle;
     builder.is_split[middle] = true;
@@ -209,12 +221,13 @@ std::vector<Node> compact_nodes(const std::vector<Node>& sparse, const std::vect
   return nodes;
 }
 
-Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& options) {
+Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& options, SplitTally* tally) {
   options.check();
   Bvh bvh;
   if (triangles.empty()) return bvh;
   const auto count = static_cast<std::uint32_t>(triangles.size());
-  Builder builder{options, triangles, {}, {}, {}, {}, {}};
+  Builder builder{options, triangles, {}, {}, {}, {}, {}, {}};
+  if (tally != nullptr) builder.tally = *tally;
   builder.primitives.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) builder.primitives.push_back(primitive_of(triangles[i], i));
   builder.sparse.resize(2 * static_cast<std::size_t>(count));
@@ -226,6 +239,7 @@ Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& opt
     builder.open.pop_back();
     build_node(builder, task);
   }
+  if (tally != nullptr) *tally = builder.tally;
   bvh.nodes = compact_nodes(builder.sparse, builder.is_split);
   bvh.primitives.reserve(count);
   for (const GnPrimitive& p : builder.primitives) bvh.primitives.push_back(p.index);

@@ -3,6 +3,8 @@
 // and tools.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 
 #include "gnomon/tree/bvh.h"
@@ -11,10 +13,19 @@ namespace gnomon {
 
 using Triangle = GnTriangle;
 
+// How the splits of a tree were found (the thesis' attempted planes, and how often its policies fell back).
+struct SplitTally {
+  std::uint64_t inner_nodes = 0;
+  std::uint64_t axes_tried = 0;  // over all nodes of two triangles and more, of those that became leaves too
+  std::array<std::uint64_t, 3> split_on{};     // inner nodes divided along x, y, z; by count along none
+  std::array<std::uint64_t, 3> fallback_on{};  // inner nodes whose policy ended with the fallback on x, y, z
+};
+
 // Top-down binned SAH over all three axes (Wald 2007) with the constants of `options`.
 // Throws Error: kInvalidArgument (options), kBadScene (a coordinate that is not finite or beyond 2^48; names
-// the triangle).
-[[nodiscard]] Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& options = {});
+// the triangle). `tally`, if given, is added to.
+[[nodiscard]] Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& options = {},
+                                  SplitTally* tally = nullptr);
 
 // Dense tree from nodes placed by split position: the children of a split at leaf position m stand at 2m and
 // 2m + 1 of `sparse`, inner nodes link to 2m. is_split[m] says which m are splits. The root is sparse[0].

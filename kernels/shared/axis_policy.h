@@ -18,6 +18,12 @@ typedef struct GnNodeView {
   gn_u32 usable;       // bit k: axis k can be divided
 } GnNodeView;
 
+// How a policy came to its split, for whoever measures it.
+typedef struct GnPolicyEffort {
+  gn_u32 axes;           // whose planes were tried, the fallback's among them: the thesis' attempted planes
+  gn_u32 fallback_axis;  // the one that the fallback tried, or GN_NONE
+} GnPolicyEffort;
+
 // How good each axis is, from 0 to 1. SPFH: (1 - |v_k| / (|v_x| + |v_y| + |v_z|))^2 of the rays' direction v at the node.
 GN_INLINE void gn_axis_qualities(const GnHeuristic* h, gn_u32 policy, const GnNodeView* node, gn_f32* quality) {
   gn_f32 v[3], sum;
@@ -65,10 +71,10 @@ GN_INLINE GnSplit gn_fallback_split(const GnHeuristic* h, int how, GN_BINS_SPACE
   return split;
 }
 
-// The split that the policy of `h` chooses; bins and counts hold all three axes, bin_count of each.
+// The split that the policy of `h` chooses; bins and counts hold all three axes, bin_count of each. effort may be null.
 GN_INLINE GnSplit gn_policy_split(const GnHeuristic* h, int how, const GnNodeView* node,
                                   GN_BINS_SPACE const GnBin* bins, GN_BINS_SPACE const gn_u32* counts,
-                                  gn_u32 plane_count, gn_u32 bin_count) {
+                                  gn_u32 plane_count, gn_u32 bin_count, GnPolicyEffort* effort) {
   const GnRules* rules = &h->rules;
   const int only_surface = node->depth >= rules->max_metric_depth;
   const gn_u32 policy = only_surface ? GN_AXES_LSPH : rules->axes;
@@ -87,6 +93,10 @@ GN_INLINE GnSplit gn_policy_split(const GnHeuristic* h, int how, const GnNodeVie
     if (poor && !none_yet && children <= rules->acceptable * father) break;
     tried |= 1u << axis;
     if (poor) axis = gn_longest_axis(node, last);
+    if (effort != 0) {
+      effort->axes += 1u;
+      if (poor) effort->fallback_axis = axis;
+    }
     if ((node->usable >> axis & 1u) == 0u) {
       if (poor) break;
       last = axis;

@@ -35,7 +35,20 @@ TEST_CASE("a set-up is built by every variant, measured, and written as rows") {
     const json row = json::parse(line);
     REQUIRE(row.at("schema") == 1);
     REQUIRE(row.at("bench") == "reproduce");
-    if (row.at("task") == "cost") cost[row.at("variant")] = row.at("local").at("mean");
+    if (row.at("task") != "cost") continue;
+    cost[row.at("variant")] = row.at("local").at("mean");
+    // Every measure that the thesis exports, and those that matter.
+    for (const char* field : {"predicted", "overlap", "fallback_share", "planes_tried", "axis_share",
+                              "axis_fallback_share", "local_hit_share", "hit_share", "break_even_hit_share",
+                              "closest", "any", "build_ms", "total", "global"}) {
+      CAPTURE(field, line);
+      REQUIRE(row.contains(field));
+    }
+    REQUIRE(row.at("planes_tried") >= 1.0);
+    if (row.at("members") == "octree-vertices") REQUIRE(row.at("planes_tried") <= 3.1);
+    const json& axes = row.at("axis_share");
+    REQUIRE(axes.at("x").get<double>() + axes.at("y").get<double>() + axes.at("z").get<double>() ==
+            Approx(1.0));
   }
   for (const char* variant : {"Standard", "Full", "Facing", "Longest", "SAH3", "PAH3"}) {
     CAPTURE(variant);

@@ -1,12 +1,12 @@
 // The thesis' cost, what measures predict of it, and how siblings overlap: by hand, and against one another.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 #include "gnomon/areas/area_rays.h"
 #include "gnomon/measure/all_pierced.h"
 #include "gnomon/measure/overlap.h"
 #include "gnomon/measure/prediction.h"
-#include "gnomon/measure/published_builder.h"
 #include "gnomon/tree/build_reference.h"
 #include "support/shapes.h"
 
@@ -64,6 +64,8 @@ TEST_CASE("the mean and its standard error are those of a sample") {
   REQUIRE(mean.mean == Approx(2.5));
   REQUIRE(mean.standard_error == Approx(std::sqrt(5.0 / 3.0) / 2.0));
   REQUIRE(gnomon::mean_of({}).mean == 0.0);
+  REQUIRE(gnomon::mean_of(std::vector<double>{7}).mean == 7.0);
+  REQUIRE(gnomon::mean_of(std::vector<double>{7}).standard_error == 0.0);
 }
 
 TEST_CASE("predictions by hand: shares of the window, and surfaces over the root's") {
@@ -74,6 +76,16 @@ TEST_CASE("predictions by hand: shares of the window, and surfaces over the root
   REQUIRE(gnomon::predicted_surface_cost(bvh) == Approx(2.0 + 6.0 / 18 * 2.4 + 10.0 / 18 * 3.6));
   REQUIRE(gnomon::prediction_error(11.0, 10.0) == Approx(0.1));
   REQUIRE(gnomon::prediction_error(0.0, 0.0) == 0.0);
+  REQUIRE(gnomon::prediction_error(9.0, 10.0) == Approx(0.1));
+  REQUIRE(std::isinf(gnomon::prediction_error(1.0, 0.0)));
+  // A child larger than its root, which no builder makes, is met by every ray at most; and a root that is a
+  // point is met always.
+  Bvh odd = bvh;
+  odd.nodes[1].hi[0] = 40;
+  REQUIRE(gnomon::predicted_surface_cost(odd) == Approx(2.0 + 2.4 + 10.0 / 18 * 3.6));
+  const Bvh dot{{node({1, 1, 1}, {1, 1, 1}, 0, 2)}, {0, 1}};
+  REQUIRE(gnomon::predicted_surface_cost(dot) == Approx(2.4));
+  REQUIRE(gnomon::predicted_surface_cost({}) == 0.0);
 }
 
 TEST_CASE("a prediction is the mean cost of rays drawn by the same measure, within its error bar") {
@@ -117,21 +129,25 @@ TEST_CASE("siblings side by side do not overlap, one behind the other they do, a
   REQUIRE(gnomon::sibling_overlap(stacked, window_over(4, 1), RayMeasure::kParallel) == Approx(1.0));
 }
 
-TEST_CASE("the published variants are what the thesis' program ran") {
-  using gnomon::PublishedVariant;
-  const InfluenceArea area = window_over(4, 1);
-  const auto full = gnomon::published_options(PublishedVariant::kFull, area);
-  REQUIRE(full.axes == gnomon::AxisPolicy::kSpfh);
-  REQUIRE(full.bins == 40);
-  REQUIRE(full.policy.quality_threshold == 0.4F);
-  REQUIRE_FALSE(full.policy.repaired);
-  REQUIRE(full.published_leaves.on);
-  REQUIRE(full.measure.kind == GN_MEASURE_WINDOW);
-  REQUIRE(full.measure.area_scale == Approx(1.0 / 16));
-  const auto standard = gnomon::published_options(PublishedVariant::kStandard, area);
-  REQUIRE(standard.axes == gnomon::AxisPolicy::kLsph);
-  REQUIRE(standard.policy.quality_threshold == 0.99F);
-  REQUIRE(standard.measure.area_share == 0.0F);
-  REQUIRE_THROWS_AS(gnomon::published_options(PublishedVariant::kFull, InfluenceArea::omni({0, 0, 0}, 1)),
-                    gnomon::Error);
+TEST_CASE("overlaps of levels are summed before they are divided, and what the window cuts off is not seen") {
+  // Level 1: children of areas 2 and 3 that share 1. Level 2, under the left: halves that share nothing.
+  const Bvh tree{
+      {node({0, 0, 0}, {4, 1, 1}, 1, 0), node({0, 0, 0}, {2, 1, 1}, 3, 0), node({1, 0, 0}, {4, 1, 1}, 0, 1),
+       node({0, 0, 0}, {1, 1, 1}, 1, 1), node({1, 0, 0}, {2, 1, 1}, 2, 1)},
+      {0, 1, 2}};
+  const auto overlap = [&](double half_width, std::uint32_t levels) {
+    return gnomon::sibling_overlap(tree, window_over(half_width, 1), RayMeasure::kParallel, levels);
+  };
+  REQUIRE(overlap(4, 0) == 0.0);
+  REQUIRE(overlap(4, 1) == Approx(1.0 / 2));
+  REQUIRE(overlap(4, 2) == Approx(1.0 / (2 + 1)));
+  REQUIRE(overlap(4, gnomon::kAllLevels) == Approx(1.0 / 3));
+  // The same where it is the right child that divides again.
+  Bvh mirrored = tree;
+  std::swap(mirrored.nodes[1], mirrored.nodes[2]);
+  REQUIRE(gnomon::sibling_overlap(mirrored, window_over(4, 1), RayMeasure::kParallel, 1) == Approx(1.0 / 2));
+  REQUIRE(gnomon::sibling_overlap(mirrored, window_over(4, 1), RayMeasure::kParallel, 2) == Approx(1.0 / 3));
+  // A window from x = 1.5 to 2.5: half of what they share is seen, and the smaller is all shared.
+  REQUIRE(overlap(0.5, 1) == Approx(1.0));
+  REQUIRE(gnomon::sibling_overlap({}, window_over(4, 1), RayMeasure::kParallel) == 0.0);
 }

@@ -64,6 +64,18 @@ TEST_CASE("triangles without area are dropped and counted, or rejected by name; 
   CHECK_THAT(load_error(builder, kReject), Contains(", triangle 0 has no area"));
 }
 
+TEST_CASE("triangles without area stay for whoever asks, those of no numbers do not") {
+  Scene scene;
+  gnomon::TriangleSink sink(scene, gnomon::InvalidPolicy::kKeepFlat);
+  const auto place = [] { return std::string("here"); };
+  CHECK(sink.add({{1, 2, 3}, {1, 2, 3}, {4, 5, 6}}, 7, place));
+  CHECK_FALSE(sink.add({{std::numeric_limits<float>::quiet_NaN(), 0, 0}, {1, 0, 0}, {0, 1, 0}}, 7, place));
+  CHECK(scene.triangles.size() == 1);
+  CHECK(scene.material_ids == std::vector<std::uint32_t>{7});
+  CHECK(scene.report.zero_area_dropped == 0);
+  CHECK(scene.report.non_finite_dropped == 1);
+}
+
 TEST_CASE("a transform that pushes vertices out of range makes them invalid") {
   GltfBuilder builder = one_triangle();
   builder.json["nodes"][0]["scale"] = {1e300, 1e300, 1};

@@ -5,6 +5,7 @@
 
 #include "gnomon/base/error.h"
 #include "gnomon/cl/check.h"
+#include "gnomon/cl/large_pages.h"
 #include "gnomon/cl/loop_limit.h"
 #include "gnomon/cl/program.h"
 
@@ -92,6 +93,10 @@ void Context::finish_setup(const ContextOptions& options) {
 Buffer Context::create_buffer(const std::string& name, std::size_t bytes) const {
   const std::size_t size = std::max<std::size_t>(bytes, 1);
   if (const auto reason = why_not_fit(device_, name, size)) throw Error(ErrorCode::kOutOfMemory, *reason);
+  if (device_.is_cpu && device_.unified_memory && fills_large_pages(size)) {
+    Handle<cl_mem> memory = create_in_large_pages(context_.get(), size);
+    if (memory.get() != nullptr) return {std::move(memory), name, size};
+  }
   cl_int status = CL_SUCCESS;
   // Host-visible where memory is shared anyway: mapping then costs nothing.
   const cl_mem_flags flags = CL_MEM_READ_WRITE | (device_.unified_memory ? CL_MEM_ALLOC_HOST_PTR : 0);

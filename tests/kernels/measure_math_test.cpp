@@ -223,7 +223,9 @@ TEST_CASE("boxes called out of sight measure nothing, and most that measure noth
     for (int i = 0; i < 300; ++i) {
       const Box box = random_box(random, 0.05F, 5.0F);
       CAPTURE(c.name, i);
-      const bool unseen = gnomon::culled_measure(c.area, box.exact(), c.measure) == 0.0;
+      // The reference's faces cancel to a last bit or so where pitch is clamped all round.
+      const bool unseen = gnomon::culled_measure(c.area, box.exact(), c.measure) <=
+                          1e-15 * gnomon::window_measure(c.area, c.measure);
       const bool out = gn_measure_how(&m, box.lo, box.hi) == GN_SEEN_NOTHING;
       if (out) REQUIRE(unseen);
       called += out ? 1 : 0;

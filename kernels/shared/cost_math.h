@@ -109,7 +109,7 @@ GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int how, GN_BINS_SPACE
                                 GN_BINS_SPACE const gn_u32* counts, gn_u32 plane_count, gn_u32 bin_count,
                                 gn_u32 axis, gn_u32 count) {
   gn_f32 w[3];
-  if (gn_linear_part(measure, how, w) || GN_LINEAR_ONLY) {
+  if (gn_linear_part(measure, how, w)) {
     return gn_sweep_boxes(measure, how, 1, w, bins, counts, plane_count, bin_count, axis, count);
   }
   return gn_sweep_boxes(measure, how, 0, w, bins, counts, plane_count, bin_count, axis, count);

@@ -11,7 +11,7 @@
 // Whether rays leave the box by its upper or lower face across the axis: rays from the origin by the upper one where it is
 // ahead of the origin, parallel ones where they go up.
 GN_INLINE int gn_leaves_by(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi, gn_u32 axis, int upper) {
-  if (m->kind == GN_MEASURE_WINDOW) return upper ? m->forward[axis] > 0.0f : m->forward[axis] < 0.0f;
+  if (gn_kind_of(m) == GN_MEASURE_WINDOW) return upper ? m->forward[axis] > 0.0f : m->forward[axis] < 0.0f;
   return upper ? hi[axis] > m->origin[axis] : lo[axis] < m->origin[axis];
 }
 
@@ -39,7 +39,7 @@ GN_INLINE GnOutline gn_outline_of(const GnMeasure* m, const gn_f32* lo, const gn
     if (gn_leaves_by(m, lo, hi, k, 0)) outline.leaves |= 1u << (2u * k);
     if (gn_leaves_by(m, lo, hi, k, 1)) outline.leaves |= 2u << (2u * k);
   }
-  outline.ahead = nearest >= m->near_distance * unit && (m->kind == GN_MEASURE_WINDOW || nearest > 1e-6f) ? 1u : 0u;
+  outline.ahead = nearest >= m->near_distance * unit && (gn_kind_of(m) == GN_MEASURE_WINDOW || nearest > 1e-6f) ? 1u : 0u;
   return outline;
 }
 
@@ -48,7 +48,7 @@ GN_INLINE GnOutline gn_outline_of(const GnMeasure* m, const gn_f32* lo, const gn
 GN_INLINE void gn_outline_corner(const GnMeasure* m, const GnOutline* outline, gn_u32 a, gn_u32 b, gn_u32 c, gn_f32* p) {
   gn_u32 i;
   for (i = 0u; i < 3u; ++i) p[i] = outline->at[a][i] + outline->at[b][i] + outline->at[c][i];
-  if (m->kind == GN_MEASURE_NEAR_PLANE) {
+  if (gn_kind_of(m) == GN_MEASURE_NEAR_PLANE) {
     const gn_f32 scale = gn_reciprocal(p[2]);
     p[0] *= scale;
     p[1] *= scale;
@@ -84,7 +84,7 @@ GN_INLINE gn_f32 gn_cut_side_yaw_pitch(const GnMeasure* m, const gn_f32* a, cons
 
 // The measure of what the outline holds. Heights are taken from one of its corners: those of small boxes keep their digits.
 GN_INLINE gn_f32 gn_outline_measure(const GnMeasure* m, const GnOutline* outline, gn_f32 unit) {
-  const gn_f32 scale = m->kind == GN_MEASURE_WINDOW ? unit : 1.0f;
+  const gn_f32 scale = gn_kind_of(m) == GN_MEASURE_WINDOW ? unit : 1.0f;
   const gn_f32 half_width = m->culled ? m->half_width * scale : GN_FLOAT_MAX;
   const gn_f32 half_height = m->culled ? m->half_height * scale : GN_FLOAT_MAX;
   gn_f32 sum = 0.0f, level = 0.0f;
@@ -102,7 +102,7 @@ GN_INLINE gn_f32 gn_outline_measure(const GnMeasure* m, const GnOutline* outline
     if (by_u == by_v) continue;
     gn_outline_corner(m, outline, 2u * k, at_u, at_v, a);
     gn_outline_corner(m, outline, 2u * k + 1u, at_u, at_v, b);
-    if (m->kind == GN_MEASURE_YAW_PITCH) {
+    if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH) {
       part = gn_cut_side_yaw_pitch(m, a, b);
     } else {
       a[1] -= level;

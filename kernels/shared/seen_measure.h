@@ -34,16 +34,16 @@ GN_INLINE void gn_face_polygon(const GnMeasure* m, const gn_f32* lo, const gn_f3
 GN_INLINE gn_u32 gn_cut_face(const GnMeasure* m, gn_f32 unit, gn_f32* a, gn_f32* b) {
   const gn_f32 forward[3] = {0.0f, 0.0f, 1.0f};
   gn_u32 count = 4u, i, side;
-  if (m->kind != GN_MEASURE_SOLID_ANGLE || m->culled) {
+  if (gn_kind_of(m) != GN_MEASURE_SOLID_ANGLE || m->culled) {
     count = gn_cut_polygon(a, count, forward, -m->near_distance * unit, b);
     for (i = 0u; i < 3u * count; ++i) a[i] = b[i];
   }
   if (!m->culled) return count;
-  for (side = 0u; side < (m->kind == GN_MEASURE_YAW_PITCH ? 2u : 4u); ++side) {
+  for (side = 0u; side < (gn_kind_of(m) == GN_MEASURE_YAW_PITCH ? 2u : 4u); ++side) {
     const gn_f32 half_size = side < 2u ? m->half_width : m->half_height;
     const gn_f32 sign = side % 2u == 0u ? -1.0f : 1.0f;
     gn_f32 plane[3] = {side < 2u ? sign : 0.0f, side < 2u ? 0.0f : sign, 0.0f};
-    const int parallel = m->kind == GN_MEASURE_WINDOW;
+    const int parallel = gn_kind_of(m) == GN_MEASURE_WINDOW;
     plane[2] = parallel ? 0.0f : half_size;
     count = gn_cut_polygon(a, count, plane, parallel ? half_size * unit : 0.0f, b);
     for (i = 0u; i < 3u * count; ++i) a[i] = b[i];
@@ -58,9 +58,9 @@ GN_INLINE gn_f32 gn_face_measure(const GnMeasure* m, const gn_f32* lo, const gn_
   gn_u32 count;
   gn_face_polygon(m, lo, hi, axis, at, unit, a);
   count = gn_cut_face(m, unit, a, b);
-  if (m->kind == GN_MEASURE_SOLID_ANGLE) return gn_polygon_solid_angle(a, count);
-  if (m->kind == GN_MEASURE_YAW_PITCH) return gn_polygon_yaw_pitch(m->half_pitch, a, count);
-  if (m->kind == GN_MEASURE_NEAR_PLANE) gn_project_polygon(a, count);
+  if (gn_kind_of(m) == GN_MEASURE_SOLID_ANGLE) return gn_polygon_solid_angle(a, count);
+  if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH) return gn_polygon_yaw_pitch(m->half_pitch, a, count);
+  if (gn_kind_of(m) == GN_MEASURE_NEAR_PLANE) gn_project_polygon(a, count);
   return gn_polygon_flat_area(a, count);
 }
 
@@ -68,7 +68,7 @@ GN_INLINE gn_f32 gn_face_measure(const GnMeasure* m, const gn_f32* lo, const gn_
 GN_INLINE gn_f32 gn_precise_measure(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi) {
   gn_f32 sum = 0.0f, unit = 1.0f;
   gn_u32 axis;
-  const int parallel = m->kind == GN_MEASURE_WINDOW;
+  const int parallel = gn_kind_of(m) == GN_MEASURE_WINDOW;
   if (!parallel) {
     gn_f32 largest = 0.0f;
     for (axis = 0u; axis < 3u; ++axis) {
@@ -76,7 +76,7 @@ GN_INLINE gn_f32 gn_precise_measure(const GnMeasure* m, const gn_f32* lo, const 
     }
     unit = gn_power_near_reciprocal(largest);
   }
-  if (m->kind != GN_MEASURE_SOLID_ANGLE) {
+  if (gn_kind_of(m) != GN_MEASURE_SOLID_ANGLE) {
     const GnOutline outline = gn_outline_of(m, lo, hi, unit);
     if (outline.ahead) return gn_outline_measure(m, &outline, unit);
   }
@@ -96,14 +96,14 @@ GN_INLINE gn_f32 gn_small_measure(const GnMeasure* m, const gn_f32* lo, const gn
   p[0] = 0.5f * (lo[0] + hi[0]) - m->origin[0];
   p[1] = 0.5f * (lo[1] + hi[1]) - m->origin[1];
   p[2] = 0.5f * (lo[2] + hi[2]) - m->origin[2];
-  inverse = m->kind == GN_MEASURE_NEAR_PLANE ? gn_reciprocal(gn_max(gn_dot(p, m->forward), 1e-30f))
+  inverse = gn_kind_of(m) == GN_MEASURE_NEAR_PLANE ? gn_reciprocal(gn_max(gn_dot(p, m->forward), 1e-30f))
                                              : gn_reciprocal_root(gn_max(gn_dot(p, p), 1e-30f));
   level = gn_dot(p, m->up) * inverse;
   p[0] = gn_max(gn_abs(p[0]), 0.5f * dx) * inverse;
   p[1] = gn_max(gn_abs(p[1]), 0.5f * dy) * inverse;
   p[2] = gn_max(gn_abs(p[2]), 0.5f * dz) * inverse;
   area = (p[0] * dy * dz + dx * (p[1] * dz + p[2] * dy)) * inverse * inverse;
-  if (m->kind != GN_MEASURE_YAW_PITCH) return area;
+  if (gn_kind_of(m) != GN_MEASURE_YAW_PITCH) return area;
   // dyaw dpitch = solid angle / cos(pitch)
   return area * gn_reciprocal_root(gn_max(1.0f - level * level, 1e-12f));
 }
@@ -111,8 +111,8 @@ GN_INLINE gn_f32 gn_small_measure(const GnMeasure* m, const gn_f32* lo, const gn
 // The square of the distance that the density of rays depends on: from the eye, along forward, or from the up axis.
 GN_INLINE gn_f32 gn_seen_distance_square(const GnMeasure* m, const gn_f32* p) {
   const gn_f32 along = gn_dot(p, m->forward), above = gn_dot(p, m->up);
-  if (m->kind == GN_MEASURE_NEAR_PLANE) return along * along;
-  return gn_dot(p, p) - (m->kind == GN_MEASURE_YAW_PITCH ? above * above : 0.0f);
+  if (gn_kind_of(m) == GN_MEASURE_NEAR_PLANE) return along * along;
+  return gn_dot(p, p) - (gn_kind_of(m) == GN_MEASURE_YAW_PITCH ? above * above : 0.0f);
 }
 
 // Bounds of a box in the area's frame.
@@ -153,15 +153,15 @@ GN_INLINE int gn_is_within_pitch(const GnMeasure* m, const GnFrameBox* box) {
 // seen from the origin; box: the same box's bounds in the frame.
 GN_INLINE int gn_is_out_of_sight(const GnMeasure* m, const gn_f32* centre, const gn_f32* half_size,
                                  const GnFrameBox* box) {
-  const int parallel = m->kind == GN_MEASURE_WINDOW;
+  const int parallel = gn_kind_of(m) == GN_MEASURE_WINDOW;
   gn_u32 side, k;
   if (!m->culled) return 0;
   if (box->at[2] + box->reach[2] < m->near_distance) return 1;
   if (parallel) {
     return gn_abs(box->at[0]) - box->reach[0] > m->half_width || gn_abs(box->at[1]) - box->reach[1] > m->half_height;
   }
-  if (m->kind == GN_MEASURE_YAW_PITCH && gn_is_beyond_pitch(m, box)) return 1;
-  for (side = 0u; side < (m->kind == GN_MEASURE_YAW_PITCH ? 2u : 4u); ++side) {
+  if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH && gn_is_beyond_pitch(m, box)) return 1;
+  for (side = 0u; side < (gn_kind_of(m) == GN_MEASURE_YAW_PITCH ? 2u : 4u); ++side) {
     const gn_f32 sign = side % 2u == 0u ? 1.0f : -1.0f;
     const gn_f32 window = side < 2u ? m->half_width : m->half_height;
     gn_f32 distance = 0.0f, reach = 0.0f;
@@ -191,17 +191,17 @@ GN_INLINE int gn_seen_how(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi
   }
   box = gn_frame_box(m, centre, half_size);
   if (gn_is_out_of_sight(m, centre, half_size, &box)) return GN_SEEN_NOTHING;
-  if (m->kind != GN_MEASURE_WINDOW &&
+  if (gn_kind_of(m) != GN_MEASURE_WINDOW &&
       !(4.0f * gn_dot(half_size, half_size) < GN_SMALL_SEEN * gn_seen_distance_square(m, centre))) {
     return GN_SEEN_PRECISE;
   }
-  if (m->kind == GN_MEASURE_SOLID_ANGLE && !m->culled) return GN_SEEN_ONE_STEP;
+  if (gn_kind_of(m) == GN_MEASURE_SOLID_ANGLE && !m->culled) return GN_SEEN_ONE_STEP;
   if (!(box.at[2] - box.reach[2] >= m->near_distance)) return GN_SEEN_PRECISE;
   if (!m->culled) return GN_SEEN_ONE_STEP;
   {
-    const gn_f32 depth = m->kind == GN_MEASURE_WINDOW ? 1.0f : box.at[2] - box.reach[2];
+    const gn_f32 depth = gn_kind_of(m) == GN_MEASURE_WINDOW ? 1.0f : box.at[2] - box.reach[2];
     const int across = gn_abs(box.at[0]) + box.reach[0] <= m->half_width * depth;
-    const int along = m->kind == GN_MEASURE_YAW_PITCH ? gn_is_within_pitch(m, &box)
+    const int along = gn_kind_of(m) == GN_MEASURE_YAW_PITCH ? gn_is_within_pitch(m, &box)
                                                       : gn_abs(box.at[1]) + box.reach[1] <= m->half_height * depth;
     return across && along ? GN_SEEN_ONE_STEP : GN_SEEN_PRECISE;
   }

@@ -64,9 +64,9 @@ GN_INLINE GnSplit gn_no_split(void) {
   return none;
 }
 
-// gn_sweep_axis, for one of two kinds of measure: linear is a literal, so that compilers make two loops of this, the one
-// that most nodes need without any choice in it.
-GN_INLINE GnSplit gn_sweep_boxes(const GnMeasure* measure, int how, const int linear, const gn_f32* w,
+// gn_sweep_axis where `how` is a literal (GN_SEEN_NOTHING: the weights w measure all), so that compilers make a loop for
+// each way of weighing, and those that most nodes need have no choice and no call in them.
+GN_INLINE GnSplit gn_sweep_boxes(const GnMeasure* measure, const int how, const gn_f32* w,
                                  GN_BINS_SPACE const GnBin* bins, GN_BINS_SPACE const gn_u32* counts,
                                  gn_u32 plane_count, gn_u32 bin_count, gn_u32 axis, gn_u32 count) {
   gn_f32 right_cost[GN_MAX_BINS], right_measure[GN_MAX_BINS], right_tie[GN_MAX_BINS];
@@ -78,7 +78,7 @@ GN_INLINE GnSplit gn_sweep_boxes(const GnMeasure* measure, int how, const int li
     if (counts[i] > 0u) {
       gn_grow_box(lo, hi, &bins[i]);
       seen += counts[i];
-      area = linear ? gn_linear_measure(w, lo, hi) : gn_curved_measure(measure, how, lo, hi);
+      area = how == GN_SEEN_NOTHING ? gn_linear_measure(w, lo, hi) : gn_curved_measure(measure, how, lo, hi);
       cost = area * (gn_f32)seen;
       if (measure->breaks_ties) tie = gn_surface_measure(lo, hi) * (gn_f32)seen;
     }
@@ -94,7 +94,8 @@ GN_INLINE GnSplit gn_sweep_boxes(const GnMeasure* measure, int how, const int li
     seen += counts[i];
     if (seen < count) {
       GnSplit candidate = {0.0f, axis, i, seen, 0.0f, 0.0f, right_measure[i + 1u], 0u};
-      candidate.left_measure = linear ? gn_linear_measure(w, lo, hi) : gn_curved_measure(measure, how, lo, hi);
+      candidate.left_measure =
+          how == GN_SEEN_NOTHING ? gn_linear_measure(w, lo, hi) : gn_curved_measure(measure, how, lo, hi);
       candidate.cost = candidate.left_measure * (gn_f32)seen + right_cost[i + 1u];
       if (measure->breaks_ties) candidate.tie = gn_surface_measure(lo, hi) * (gn_f32)seen + right_tie[i + 1u];
       if (best.axis == GN_NONE || gn_split_is_better(&candidate, &best, count)) best = candidate;
@@ -110,9 +111,12 @@ GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int how, GN_BINS_SPACE
                                 gn_u32 axis, gn_u32 count) {
   gn_f32 w[3];
   if (gn_linear_part(measure, how, w)) {
-    return gn_sweep_boxes(measure, how, 1, w, bins, counts, plane_count, bin_count, axis, count);
+    return gn_sweep_boxes(measure, GN_SEEN_NOTHING, w, bins, counts, plane_count, bin_count, axis, count);
   }
-  return gn_sweep_boxes(measure, how, 0, w, bins, counts, plane_count, bin_count, axis, count);
+  if (how == GN_SEEN_ONE_STEP) {
+    return gn_sweep_boxes(measure, GN_SEEN_ONE_STEP, w, bins, counts, plane_count, bin_count, axis, count);
+  }
+  return gn_sweep_boxes(measure, GN_SEEN_PRECISE, w, bins, counts, plane_count, bin_count, axis, count);
 }
 
 // Rates a split found by other means with this measure: its cost and its sides' measures.

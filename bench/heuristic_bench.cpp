@@ -21,7 +21,7 @@ namespace {
 using gnomon::bench::json;
 using gnomon::bench::spread_json;
 
-constexpr int kRounds = 9;
+constexpr int kRounds = 7;
 constexpr std::uint64_t kSeed = 1;
 
 struct Box {

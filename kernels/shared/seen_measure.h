@@ -97,7 +97,7 @@ GN_INLINE gn_f32 gn_small_measure(const GnMeasure* m, const gn_f32* lo, const gn
   p[1] = 0.5f * (lo[1] + hi[1]) - m->origin[1];
   p[2] = 0.5f * (lo[2] + hi[2]) - m->origin[2];
   inverse = gn_kind_of(m) == GN_MEASURE_NEAR_PLANE ? gn_reciprocal(gn_max(gn_dot(p, m->forward), 1e-30f))
-                                             : gn_reciprocal_root(gn_max(gn_dot(p, p), 1e-30f));
+                                             : gn_rough_reciprocal_root(gn_max(gn_dot(p, p), 1e-30f));
   level = gn_dot(p, m->up) * inverse;
   p[0] = gn_max(gn_abs(p[0]), 0.5f * dx) * inverse;
   p[1] = gn_max(gn_abs(p[1]), 0.5f * dy) * inverse;
@@ -105,7 +105,7 @@ GN_INLINE gn_f32 gn_small_measure(const GnMeasure* m, const gn_f32* lo, const gn
   area = (p[0] * dy * dz + dx * (p[1] * dz + p[2] * dy)) * inverse * inverse;
   if (gn_kind_of(m) != GN_MEASURE_YAW_PITCH) return area;
   // dyaw dpitch = solid angle / cos(pitch)
-  return area * gn_reciprocal_root(gn_max(1.0f - level * level, 1e-12f));
+  return area * gn_rough_reciprocal_root(gn_max(1.0f - level * level, 1e-12f));
 }
 
 // The square of the distance that the density of rays depends on: from the eye, along forward, or from the up axis.
@@ -185,17 +185,17 @@ GN_INLINE int gn_seen_how(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi
   gn_f32 centre[3], half_size[3];
   GnFrameBox box;
   gn_u32 k;
+  int small;
   for (k = 0u; k < 3u; ++k) {
     centre[k] = 0.5f * (lo[k] + hi[k]) - m->origin[k];
     half_size[k] = 0.5f * (hi[k] - lo[k]);
   }
+  small = gn_kind_of(m) == GN_MEASURE_WINDOW ||
+          4.0f * gn_dot(half_size, half_size) < GN_SMALL_SEEN * gn_seen_distance_square(m, centre);
+  if (gn_kind_of(m) == GN_MEASURE_SOLID_ANGLE && !m->culled) return small ? GN_SEEN_ONE_STEP : GN_SEEN_PRECISE;
   box = gn_frame_box(m, centre, half_size);
   if (gn_is_out_of_sight(m, centre, half_size, &box)) return GN_SEEN_NOTHING;
-  if (gn_kind_of(m) != GN_MEASURE_WINDOW &&
-      !(4.0f * gn_dot(half_size, half_size) < GN_SMALL_SEEN * gn_seen_distance_square(m, centre))) {
-    return GN_SEEN_PRECISE;
-  }
-  if (gn_kind_of(m) == GN_MEASURE_SOLID_ANGLE && !m->culled) return GN_SEEN_ONE_STEP;
+  if (!small) return GN_SEEN_PRECISE;
   if (!(box.at[2] - box.reach[2] >= m->near_distance)) return GN_SEEN_PRECISE;
   if (!m->culled) return GN_SEEN_ONE_STEP;
   {

@@ -3,7 +3,7 @@
 // process CPU time on one thread; one JSON row a measure on stdout. A ratio above 1 says that the measure is
 // slower.
 //
-//   heuristic_bench [SCENE TRIANGLES]...   default: city 1000000 atrium 1000000
+//   heuristic_bench [--only MEASURE] [SCENE TRIANGLES]...   default: all measures, city 1000000 atrium 1000000
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -21,7 +21,7 @@ namespace {
 using gnomon::bench::json;
 using gnomon::bench::spread_json;
 
-constexpr int kRounds = 5;
+constexpr int kRounds = 7;
 constexpr std::uint64_t kSeed = 1;
 
 struct Box {
@@ -76,7 +76,8 @@ std::vector<std::pair<std::string, GnMeasure>> measures_for(const Box& box) {
           {"point, yaw and pitch, culled", gnomon::measure_of(view, RayMeasure::kYawPitch, true)}};
 }
 
-void run(const gnomon::cl::Context& context, const std::string& name, std::uint64_t count) {
+void run(const gnomon::cl::Context& context, const std::string& only, const std::string& name,
+         std::uint64_t count) {
   const gnomon::Scene scene = gnomon::generate_scene(name, count, kSeed);
   const json common = {{"schema", 1},
                        {"bench", "heuristic"},
@@ -93,6 +94,7 @@ void run(const gnomon::cl::Context& context, const std::string& name, std::uint6
     static_cast<void>(gnomon::build_device(context, scene.triangles, options));
   };
   for (const auto& [measure_name, measure] : measures_for(box_of(scene))) {
+    if (!only.empty() && measure_name != only) continue;
     gnomon::BuildOptions options;
     options.measure = measure;
     const auto times = gnomon::bench::measure(
@@ -113,9 +115,15 @@ void run(const gnomon::cl::Context& context, const std::string& name, std::uint6
 
 int main(int argc, char** argv) {
   try {
+    std::string only;
+    if (argc > 2 && std::string(argv[1]) == "--only") {
+      only = argv[2];
+      argc -= 2;
+      argv += 2;
+    }
     const gnomon::cl::Context context = gnomon::bench::one_thread_context();
     for (const auto& [name, triangles] : gnomon::bench::scenes_from(argc, argv))
-      run(context, name, triangles);
+      run(context, only, name, triangles);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "heuristic_bench: %s\n", error.what());

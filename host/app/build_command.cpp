@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "device_choice.h"
 #include "document.h"
+#include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
 #include "scene_source.h"
@@ -16,6 +17,7 @@ struct Options {
   SceneOptions scene;
   DeviceOptions device;
   BuildOptions build;
+  HeuristicOptions heuristic;
   BuildRuns runs{3, true};
 };
 
@@ -26,7 +28,8 @@ std::string stage_table(const TimedBuild& build) {
   return table.text();
 }
 
-std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const TimedBuild& build) {
+std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const std::string& heuristic,
+                     const TimedBuild& build) {
   const double mtris = 1e-3 * static_cast<double>(scene.triangles.size()) / build.total_ms.median;
   Facts facts;
   facts.add("device", describe(device));
@@ -34,6 +37,7 @@ std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const Tim
   facts.add("build", fixed(build.total_ms.median, 2) + " ms (median of " + std::to_string(build.runs.repeat) +
                          ", " + fixed(build.total_ms.min, 2) + " to " + fixed(build.total_ms.max, 2) + "), " +
                          fixed(mtris, 2) + " Mtris/s");
+  facts.add("heuristic", heuristic);
   facts.add("tree", describe(build));
   facts.add("leaves", fixed(build.stats.mean_leaf, 2) + " triangles on average, " +
                           std::to_string(build.stats.largest_leaf) + " at most");
@@ -44,17 +48,21 @@ std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const Tim
 
 int run(const Options& options, Console& console) {
   options.build.check();
+  check(options.heuristic);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const TimedBuild build = build_for_use(context, scene, options.build, options.runs, console.progress());
+  const BuildOptions tree = with_heuristic(options.build, options.heuristic, scene);
+  const TimedBuild build = build_for_use(context, scene, tree, options.runs, console.progress());
   stop_if_interrupted();
   Json document = start_document("build");
   add_device(document, &context.device());
   add_scene(document, options.scene, scene);
-  add_tree_options(document, context.device(), scene.triangles.size(), options.build);
+  add_tree_options(document, context.device(), scene.triangles.size(), tree);
+  add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
   console.print(document);
-  console.print(facts_of(context.device(), scene, build) + "\n" + stage_table(build));
+  console.print(facts_of(context.device(), scene, describe(options.heuristic, tree, scene), build) + "\n" +
+                stage_table(build));
   return 0;
 }
 
@@ -68,13 +76,20 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
   add_count(*command, "--repeat", options->runs.repeat, "timed builds, after one to warm up")
       ->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);
+  add_heuristic_options(*command, options->heuristic);
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(
-      "Binned surface area heuristic over all three axes. The tree depends on the triangles and the options\n"
-      "under \"Tree\" alone: its hash is the same on every device. Times by stage are the device's own; the\n"
-      "total is wall clock and includes the upload.\n\n"
-      "Examples:\n  gnomon build model.glb\n  gnomon build gen:city:1M --bins 32 --device gpu --json");
+      "Binned over all three axes. The tree depends on the triangles and the options under \"Tree\" and "
+      "\"Rays\"\n"
+      "alone: its hash is the same on every device. Times by stage are the device's own; the total is wall "
+      "clock\n"
+      "and includes the upload.\n\n" +
+      std::string(kHeuristicHelp) +
+      "\nExamples:\n  gnomon build model.glb\n  gnomon build gen:city:1M --bins 32 --device gpu --json\n"
+      "  gnomon build gen:city:1M --heuristic window --light 0\n"
+      "  gnomon build gen:atrium --heuristic near-plane --point 0,2,0 --direction 1,0,0 --fov 90,60 --share "
+      "0.8");
   command->callback(
       [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }

@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "device_choice.h"
 #include "document.h"
+#include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
 #include "ray_batch.h"
@@ -19,6 +20,7 @@ struct Options {
   SceneOptions scene;
   DeviceOptions device;
   BuildOptions build;
+  HeuristicOptions heuristic;
   std::string kind = "primary";
   std::uint64_t count = 1'000'000;
   std::uint64_t seed = 1;
@@ -71,12 +73,14 @@ void add_trace(Json& document, const Options& options, const TimedTrace& trace, 
 }
 
 std::string facts_of(const Options& options, const cl::DeviceInfo& device, const Scene& scene,
-                     const TimedBuild& build, const TimedTrace& trace, std::size_t rays, bool any_hit) {
+                     const std::string& heuristic, const TimedBuild& build, const TimedTrace& trace,
+                     std::size_t rays, bool any_hit) {
   const double share =
       rays == 0 ? 0.0 : 100.0 * static_cast<double>(trace.hit_count) / static_cast<double>(rays);
   Facts facts;
   facts.add("device", describe(device));
   facts.add("scene", describe(scene));
+  facts.add("heuristic", heuristic);
   facts.add("tree", describe(build));
   facts.add("rays", std::to_string(rays) + " " +
                         (options.rays_in.empty() ? options.kind : "from " + options.rays_in) + ", " +
@@ -95,10 +99,12 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
 
 int run(const Options& options, Console& console) {
   options.build.check();
+  check(options.heuristic);
   const bool any_hit = wants_any_hit(options);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const TimedBuild build = build_for_use(context, scene, options.build, {1, true}, console.progress());
+  const BuildOptions tree = with_heuristic(options.build, options.heuristic, scene);
+  const TimedBuild build = build_for_use(context, scene, tree, {1, true}, console.progress());
   const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
   stop_if_interrupted();
   const TimedTrace trace =
@@ -109,11 +115,13 @@ int run(const Options& options, Console& console) {
   Json document = start_document("trace");
   add_device(document, &context.device());
   add_scene(document, options.scene, scene);
-  add_tree_options(document, context.device(), scene.triangles.size(), options.build);
+  add_tree_options(document, context.device(), scene.triangles.size(), tree);
+  add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
   add_trace(document, options, trace, rays.size(), any_hit);
   console.print(document);
-  console.print(facts_of(options, context.device(), scene, build, trace, rays.size(), any_hit));
+  console.print(facts_of(options, context.device(), scene, describe(options.heuristic, tree, scene), build,
+                         trace, rays.size(), any_hit));
   return 0;
 }
 
@@ -150,6 +158,7 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
   add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")
       ->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);
+  add_heuristic_options(*command, options->heuristic);
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(explain_ray_kinds() + "\n" + kFiles +

@@ -12,6 +12,7 @@
 #include "exit_status.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/oracle.h"
+#include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
 #include "ray_batch.h"
@@ -29,6 +30,7 @@ struct Options {
   SceneOptions scene;
   DeviceOptions device;
   BuildOptions build;
+  HeuristicOptions heuristic;
   std::uint64_t count = 20'000;
   std::uint64_t max_rays = 2'000;
   std::uint64_t seed = 1;
@@ -59,10 +61,11 @@ struct Findings {
   [[nodiscard]] bool good() const { return !fault && !tree_differs && mismatches() == 0; }
 };
 
-void check_tree(Findings& findings, const Options& options, const Scene& scene, const TimedBuild& build) {
+void check_tree(Findings& findings, const Options& options, const BuildOptions& tree, const Scene& scene,
+                const TimedBuild& build) {
   findings.fault = build.fault;
   if (!options.reference && scene.triangles.size() > kReferenceLimit) return;
-  findings.reference_hash = tree_hash(build_reference(scene.triangles, options.build));
+  findings.reference_hash = tree_hash(build_reference(scene.triangles, tree));
   findings.tree_differs = *findings.reference_hash != build.hash;
 }
 
@@ -133,11 +136,12 @@ std::string kind_table(const Findings& findings) {
   return table.text() + "\n";
 }
 
-std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const TimedBuild& build,
-                     const Findings& findings) {
+std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const std::string& heuristic,
+                     const TimedBuild& build, const Findings& findings) {
   Facts facts;
   facts.add("device", describe(device));
   facts.add("scene", describe(scene));
+  facts.add("heuristic", heuristic);
   facts.add("tree", describe(build));
   facts.add("invariants", findings.fault ? "BROKEN: " + findings.fault->what : "hold");
   if (findings.reference_hash) {
@@ -157,11 +161,13 @@ std::string verdict(const Findings& findings, const Console& console) {
 
 int run(const Options& options, Console& console) {
   options.build.check();
+  check(options.heuristic);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const TimedBuild build = build_timed(context, scene, options.build, {1, false}, console.progress());
+  const BuildOptions tree = with_heuristic(options.build, options.heuristic, scene);
+  const TimedBuild build = build_timed(context, scene, tree, {1, false}, console.progress());
   Findings findings;
-  check_tree(findings, options, scene, build);
+  check_tree(findings, options, tree, scene, build);
   if (findings.fault) {
     console.note("no rays are sent through a broken tree: they might never come back");
   } else {
@@ -180,12 +186,13 @@ int run(const Options& options, Console& console) {
   Json document = start_document("validate");
   add_device(document, &context.device());
   add_scene(document, options.scene, scene);
-  add_tree_options(document, context.device(), scene.triangles.size(), options.build);
+  add_tree_options(document, context.device(), scene.triangles.size(), tree);
+  add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
   add_findings(document, options, findings);
   console.print(document);
-  console.print(facts_of(context.device(), scene, build, findings) + "\n" + kind_table(findings) +
-                verdict(findings, console));
+  console.print(facts_of(context.device(), scene, describe(options.heuristic, tree, scene), build, findings) +
+                "\n" + kind_table(findings) + verdict(findings, console));
   return findings.good() ? kOk : kMismatch;
 }
 
@@ -207,6 +214,7 @@ void add_validate_command(CLI::App& program, OutputOptions& output, Action& acti
   command->add_flag("--reference", options->reference,
                     "build with the reference builder too, however large the scene");
   add_build_options(*command, options->build);
+  add_heuristic_options(*command, options->heuristic);
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(

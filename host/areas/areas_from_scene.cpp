@@ -132,4 +132,9 @@ std::vector<LightArea> areas_of_lights(const Scene& scene) {
   return areas;
 }
 
+std::optional<InfluenceArea> area_of_light(const Scene& scene, const Light& light) {
+  if (scene.triangles.empty()) return std::nullopt;
+  return LightAreas(scene).area_of(light);
+}
+
 }  // namespace gnomon

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "gnomon/areas/influence_area.h"
@@ -22,5 +23,8 @@ struct LightArea {
 // ways. Left out: every light of a scene without triangles, area lights that name none, emitters with nothing
 // in front.
 [[nodiscard]] std::vector<LightArea> areas_of_lights(const Scene& scene);
+
+// The area of one light, which need not be the scene's own; nothing where areas_of_lights would leave it out.
+[[nodiscard]] std::optional<InfluenceArea> area_of_light(const Scene& scene, const Light& light);
 
 }  // namespace gnomon

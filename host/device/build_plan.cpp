@@ -28,7 +28,7 @@ constexpr std::uint32_t kMostInOneSubtree = 1U << 22U;
 // makes up to two nodes, and half of the limit stays in reserve.
 void heed_loop_limit(BuildPlan& plan, const cl::DeviceInfo& device, const BuildOptions& options) {
   const std::uint32_t limit = device.loop_limit;
-  if (!plan.linear_only) {
+  if (plan.kind != GN_MEASURE_LINEAR) {
     throw Error(ErrorCode::kInvalidArgument,
                 device.name + " ends loops after " + std::to_string(limit) + " turns, and " +
                     heuristic_name(options) +
@@ -62,7 +62,7 @@ void heed_loop_limit(BuildPlan& plan, const cl::DeviceInfo& device, const BuildO
 std::string BuildPlan::program_options() const {
   return "-DGN_WGS=" + std::to_string(work_group_size) + " -DGN_BINS=" + std::to_string(bins) +
          " -DGN_AXES=" + std::to_string(axes) + "u -DGN_PUBLISHED_BINS=" + (published_bins ? "1" : "0") +
-         " -DGN_LINEAR_ONLY=" + (linear_only ? "1" : "0");
+         " -DGN_KIND=" + std::to_string(kind) + "u";
 }
 
 std::vector<BufferNeed> BuildPlan::buffers() const {
@@ -111,7 +111,7 @@ BuildPlan plan_build(const cl::DeviceInfo& device, std::uint64_t count, const Bu
   plan.bins = options.bins;
   plan.axes = static_cast<std::uint32_t>(options.axes);
   plan.published_bins = options.published_leaves.on;
-  plan.linear_only = options.measure.kind == GN_MEASURE_LINEAR;
+  plan.kind = options.measure.kind;
   const auto widest =
       static_cast<std::uint32_t>(std::bit_floor(std::min<std::uint64_t>(device.max_work_group, 256)));
   const std::uint32_t wanted = options.work_group_size != 0 ? options.work_group_size

@@ -14,11 +14,11 @@ struct BuildPlan {
   std::uint32_t count = 0;  // triangles
   std::uint32_t bins = 0;
   std::uint32_t axes = GN_AXES_ALL;
-  bool published_bins = false;        // the published builder's keys and planes
-  bool linear_only = true;            // no other measure is compiled in
-  std::uint32_t work_group_size = 0;  // 1: serial flavour
-  std::uint32_t item_group_size = 0;  // of kernels with one work-item per element
-  std::uint32_t subtree_size = 0;     // nodes up to this many triangles go to one work-group
+  bool published_bins = false;             // the published builder's keys and planes
+  std::uint32_t kind = GN_MEASURE_LINEAR;  // of measure; no other but linear ones is compiled in
+  std::uint32_t work_group_size = 0;       // 1: serial flavour
+  std::uint32_t item_group_size = 0;       // of kernels with one work-item per element
+  std::uint32_t subtree_size = 0;          // nodes up to this many triangles go to one work-group
   std::uint32_t chunk_size = 0;
   std::uint32_t compact_chunk = 0;  // leaf positions one work-item ranks
   std::uint32_t max_tasks = 0;      // large nodes in one level

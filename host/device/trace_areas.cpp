@@ -44,13 +44,16 @@ ForestTracer::ForestTracer(const cl::Context& context, const DeviceForest& fores
   closest_ = context.programs().kernel({"trace_areas.cl"}, program, "trace_areas_closest");
   any_ = context.programs().kernel({"trace_areas.cl"}, program, "trace_areas_any");
   invalid_ = context.create_buffer("invalid_rays", sizeof(std::uint32_t));
+  no_counters_ = context.create_buffer("no_counters", sizeof(GnAreaCounters));
+  context.fill(invalid_, 0);
 }
 
 ForestTracer::ForestTracer(ForestTracer&&) noexcept = default;
 ForestTracer::~ForestTracer() = default;
 
 cl::Handle<cl_event> ForestTracer::enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
-                                           const Passes& passes, std::uint32_t pass) const {
+                                           const Passes& passes, std::uint32_t pass,
+                                           std::span<const cl_event> wait_for) const {
   cl::set_arguments(kernel.get(), forest_.nodes, forest_.triangles, forest_.order, top_level_.areas,
                     top_level_.boxes, top_level_.cells, top_level_.cell_areas, top_level_.box_count,
                     launch.rays, launch.answers, invalid_, launch.counters, launch.count);
@@ -60,7 +63,28 @@ cl::Handle<cl_event> ForestTracer::enqueue(const cl::Handle<cl_kernel>& kernel, 
   }
   const std::size_t local = plan_->work_group_size;
   const std::size_t global = (std::max(launch.count, 1U) + local - 1) / local * local;
-  return cl::enqueue(context_.queue(), kernel.get(), global, local);
+  return cl::enqueue(context_.queue(), kernel.get(), global, local, wait_for);
+}
+
+cl::Handle<cl_event> ForestTracer::enqueue_only(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
+                                                std::span<const cl_event> wait_for) const {
+  if (plan_->counters) throw Error(ErrorCode::kInvalidArgument, "a counting tracer cannot only enqueue");
+  // The driver keeps the buffers alive until the commands that use them are done.
+  const Passes passes = make_passes(context_, *plan_, launch.count);
+  auto event = enqueue(kernel, launch, passes, 0, wait_for);
+  for (std::uint32_t pass = 1; pass < plan_->most_passes; ++pass)
+    event = enqueue(kernel, launch, passes, pass, {});
+  return event;
+}
+
+cl::Handle<cl_event> ForestTracer::enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
+                                                   std::span<const cl_event> wait_for) const {
+  return enqueue_only(closest_, {rays, hits, no_counters_.mem.get(), count}, wait_for);
+}
+
+cl::Handle<cl_event> ForestTracer::enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
+                                               std::span<const cl_event> wait_for) const {
+  return enqueue_only(any_, {rays, occluded, no_counters_.mem.get(), count}, wait_for);
 }
 
 template <typename Answer>
@@ -68,13 +92,13 @@ ForestTraceResult ForestTracer::trace_all(const cl::Handle<cl_kernel>& kernel, s
                                           std::vector<Answer> ForestTraceResult::*answers,
                                           const Progress& progress) const {
   ForestTraceResult result;
-  context_.fill(invalid_, 0);
+  const std::uint64_t invalid_before = invalid_rays();
   const EnqueuePass pass_of = [&](const Launch& launch, const Passes& passes, std::uint32_t pass) {
-    return enqueue(kernel, launch, passes, pass);
+    return enqueue(kernel, launch, passes, pass, {});
   };
   result.kernel_ms =
       trace_in_batches(context_, *plan_, rays, result.*answers, result.counters, pass_of, progress);
-  result.invalid_rays = context_.download_values<std::uint32_t>(invalid_, 1).front();
+  result.invalid_rays = invalid_rays() - invalid_before;
   return result;
 }
 
@@ -84,6 +108,10 @@ ForestTraceResult ForestTracer::closest(std::span<const Ray> rays, const Progres
 
 ForestTraceResult ForestTracer::any(std::span<const Ray> rays, const Progress& progress) const {
   return trace_all(any_, rays, &ForestTraceResult::occluded, progress);
+}
+
+std::uint64_t ForestTracer::invalid_rays() const {
+  return context_.download_values<std::uint32_t>(invalid_, 1).front();
 }
 
 }  // namespace gnomon

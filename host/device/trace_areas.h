@@ -51,9 +51,22 @@ class ForestTracer {
   [[nodiscard]] ForestTraceResult closest(std::span<const Ray> rays, const Progress& progress = {}) const;
   [[nodiscard]] ForestTraceResult any(std::span<const Ray> rays, const Progress& progress = {}) const;
 
+  // Enqueue on the context's queue and return, as Tracer's calls of these names do: rays holds `count` GnRay;
+  // hits receives `count` GnHit, occluded `count` uint32. Throws Error: kInvalidArgument for a counting
+  // tracer.
+  [[nodiscard]] cl::Handle<cl_event> enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
+                                                     std::span<const cl_event> wait_for = {}) const;
+  [[nodiscard]] cl::Handle<cl_event> enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
+                                                 std::span<const cl_event> wait_for = {}) const;
+  // Rays so far that were not traceable, over all calls. Blocks until earlier launches are done.
+  [[nodiscard]] std::uint64_t invalid_rays() const;
+
  private:
   [[nodiscard]] cl::Handle<cl_event> enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
-                                             const Passes& passes, std::uint32_t pass) const;
+                                             const Passes& passes, std::uint32_t pass,
+                                             std::span<const cl_event> wait_for) const;
+  [[nodiscard]] cl::Handle<cl_event> enqueue_only(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
+                                                  std::span<const cl_event> wait_for) const;
   template <typename Answer>
   [[nodiscard]] ForestTraceResult trace_all(const cl::Handle<cl_kernel>& kernel, std::span<const Ray> rays,
                                             std::vector<Answer> ForestTraceResult::*answers,
@@ -66,6 +79,7 @@ class ForestTracer {
   cl::Handle<cl_kernel> closest_;
   cl::Handle<cl_kernel> any_;
   cl::Buffer invalid_;
+  cl::Buffer no_counters_;
 };
 
 }  // namespace gnomon

@@ -1,7 +1,7 @@
 // Which axis a node is divided along: the cheapest of all three, or the one or two that a policy lets through (the
 // thesis' EvaluateSplittingOrientation, as published and with its faults repaired). Compiled by both compilers.
 // SPFH prefers the axis that rays cross least (their children do not hide behind one another), LSPH the longest.
-// Source: Falcone, "Ray Distribution Aware Heuristics for BVH Construction" (PoliMi); host/notes/axis-policies.md says what
+// Source: Falcone, "Ray Distribution Aware Heuristics for BVH Construction" (PoliMi); host/notes/heuristics.md says what
 // was wrong. Feeds choose_split in bin.h and the reference builder.
 #ifndef GNOMON_SHARED_AXIS_POLICY_H
 #define GNOMON_SHARED_AXIS_POLICY_H

@@ -47,6 +47,16 @@ typedef struct GnMeasure {
 } GnMeasure;
 GN_SIZE_IS(GnMeasure, 96);
 
+// The measure's kind. GN_KIND: compiled for this kind and the linear measures that settle ties and fallbacks, without the
+// code of the others.
+GN_INLINE gn_u32 gn_kind_of(const GnMeasure* m) {
+#ifdef GN_KIND
+  return GN_KIND == GN_MEASURE_LINEAR || m->kind == GN_MEASURE_LINEAR ? GN_MEASURE_LINEAR : GN_KIND;
+#else
+  return m->kind;
+#endif
+}
+
 #define GN_AXES_ALL 0u   // the cheapest split of all three axes
 #define GN_AXES_SPFH 1u  // axes that rays cross least first (splitting plane facing heuristic)
 #define GN_AXES_LSPH 2u  // longest axes first (longest side plane heuristic)

@@ -64,11 +64,11 @@ GN_INLINE GnSplit gn_no_split(void) {
   return none;
 }
 
-// Best plane of one axis: bins [0, plane] go left, plane < plane_count. cost is measure(L) n_L + measure(R) n_R, without
-// constants. axis == GN_NONE when all centroids share a side of every plane. bins and counts are the axis' own.
-GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int how, GN_BINS_SPACE const GnBin* bins,
-                                GN_BINS_SPACE const gn_u32* counts, gn_u32 plane_count, gn_u32 bin_count,
-                                gn_u32 axis, gn_u32 count) {
+// gn_sweep_axis where `how` is a literal (GN_SEEN_NOTHING: the weights w measure all), so that compilers make a loop for
+// each way of weighing, and those that most nodes need have no choice and no call in them.
+GN_INLINE GnSplit gn_sweep_boxes(const GnMeasure* measure, const int how, const gn_f32* w,
+                                 GN_BINS_SPACE const GnBin* bins, GN_BINS_SPACE const gn_u32* counts,
+                                 gn_u32 plane_count, gn_u32 bin_count, gn_u32 axis, gn_u32 count) {
   gn_f32 right_cost[GN_MAX_BINS], right_measure[GN_MAX_BINS], right_tie[GN_MAX_BINS];
   gn_f32 lo[3], hi[3], area = 0.0f, cost = 0.0f, tie = 0.0f;
   gn_u32 i, seen = 0u;
@@ -78,7 +78,7 @@ GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int how, GN_BINS_SPACE
     if (counts[i] > 0u) {
       gn_grow_box(lo, hi, &bins[i]);
       seen += counts[i];
-      area = gn_box_measure(measure, how, lo, hi);
+      area = how == GN_SEEN_NOTHING ? gn_linear_measure(w, lo, hi) : gn_curved_measure(measure, how, lo, hi);
       cost = area * (gn_f32)seen;
       if (measure->breaks_ties) tie = gn_surface_measure(lo, hi) * (gn_f32)seen;
     }
@@ -94,13 +94,29 @@ GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int how, GN_BINS_SPACE
     seen += counts[i];
     if (seen < count) {
       GnSplit candidate = {0.0f, axis, i, seen, 0.0f, 0.0f, right_measure[i + 1u], 0u};
-      candidate.left_measure = gn_box_measure(measure, how, lo, hi);
+      candidate.left_measure =
+          how == GN_SEEN_NOTHING ? gn_linear_measure(w, lo, hi) : gn_curved_measure(measure, how, lo, hi);
       candidate.cost = candidate.left_measure * (gn_f32)seen + right_cost[i + 1u];
       if (measure->breaks_ties) candidate.tie = gn_surface_measure(lo, hi) * (gn_f32)seen + right_tie[i + 1u];
       if (best.axis == GN_NONE || gn_split_is_better(&candidate, &best, count)) best = candidate;
     }
   }
   return best;
+}
+
+// Best plane of one axis: bins [0, plane] go left, plane < plane_count. cost is measure(L) n_L + measure(R) n_R, without
+// constants. axis == GN_NONE when all centroids share a side of every plane. bins and counts are the axis' own.
+GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int how, GN_BINS_SPACE const GnBin* bins,
+                                GN_BINS_SPACE const gn_u32* counts, gn_u32 plane_count, gn_u32 bin_count,
+                                gn_u32 axis, gn_u32 count) {
+  gn_f32 w[3];
+  if (gn_linear_part(measure, how, w)) {
+    return gn_sweep_boxes(measure, GN_SEEN_NOTHING, w, bins, counts, plane_count, bin_count, axis, count);
+  }
+  if (how == GN_SEEN_ONE_STEP) {
+    return gn_sweep_boxes(measure, GN_SEEN_ONE_STEP, w, bins, counts, plane_count, bin_count, axis, count);
+  }
+  return gn_sweep_boxes(measure, GN_SEEN_PRECISE, w, bins, counts, plane_count, bin_count, axis, count);
 }
 
 // Rates a split found by other means with this measure: its cost and its sides' measures.

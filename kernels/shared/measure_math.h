@@ -27,26 +27,40 @@ GN_INLINE gn_f32 gn_surface_measure(const gn_f32* lo, const gn_f32* hi) {
   return dx * (dy + dz) + dy * dz;
 }
 
-// 1: compiled for linear measures alone, without the code of the others.
-#ifndef GN_LINEAR_ONLY
-#define GN_LINEAR_ONLY 0
-#endif
-
-// How the parts of a node with this box are to be measured (GN_SEEN_*).
+// How the parts of a node with this box are to be measured: GN_SEEN_*, 0 where there is nothing to choose.
 GN_INLINE int gn_measure_how(const GnMeasure* measure, const gn_f32* lo, const gn_f32* hi) {
-  if (GN_LINEAR_ONLY || measure->kind == GN_MEASURE_LINEAR || measure->kind == GN_MEASURE_CUSTOM) return 0;
+  if (gn_kind_of(measure) == GN_MEASURE_LINEAR || gn_kind_of(measure) == GN_MEASURE_CUSTOM) return 0;
   return gn_seen_how(measure, lo, hi);
+}
+
+// Whether boxes measured this way need no more than three face weights, which are w then: linear measures always, the
+// others where no ray meets the node, parallel rays also where the window holds all of it.
+GN_INLINE int gn_linear_part(const GnMeasure* measure, int how, gn_f32* w) {
+  const gn_u32 kind = gn_kind_of(measure);
+  const int linear = kind == GN_MEASURE_LINEAR;
+  const int aside = !linear && kind != GN_MEASURE_CUSTOM && how == GN_SEEN_NOTHING;
+  const int inside = kind == GN_MEASURE_WINDOW && how == GN_SEEN_ONE_STEP;
+  gn_u32 k;
+  for (k = 0u; k < 3u; ++k) {
+    w[k] = measure->weights[k];
+    if (inside) w[k] += measure->area_scale * gn_abs(measure->forward[k]);
+  }
+  return linear || aside || inside;
+}
+
+// The measure of boxes that need more than that.
+GN_INLINE gn_f32 gn_curved_measure(const GnMeasure* measure, int how, const gn_f32* lo, const gn_f32* hi) {
+  const gn_f32 seen = gn_kind_of(measure) == GN_MEASURE_CUSTOM ? gn_custom_measure(measure, lo, hi)
+                                                                  : gn_seen_measure(measure, how, lo, hi);
+  return measure->area_scale * seen + gn_linear_measure(measure->weights, lo, hi);
 }
 
 // The heuristic seam: what a builder minimises. how: gn_measure_how of the node whose parts are measured, so that
 // all its candidates are compared by one formula.
 GN_INLINE gn_f32 gn_box_measure(const GnMeasure* measure, int how, const gn_f32* lo, const gn_f32* hi) {
-  if (GN_LINEAR_ONLY || measure->kind == GN_MEASURE_LINEAR) return gn_linear_measure(measure->weights, lo, hi);
-  {
-    const gn_f32 seen = measure->kind == GN_MEASURE_CUSTOM ? gn_custom_measure(measure, lo, hi)
-                                                           : gn_seen_measure(measure, how, lo, hi);
-    return measure->area_scale * seen + gn_linear_measure(measure->weights, lo, hi);
-  }
+  gn_f32 w[3];
+  if (gn_linear_part(measure, how, w)) return gn_linear_measure(w, lo, hi);
+  return gn_curved_measure(measure, how, lo, hi);
 }
 
 #endif

@@ -7,6 +7,7 @@
 
 using gnomon::app::format_bytes;
 using gnomon::app::parse_count;
+using gnomon::app::parse_numbers;
 
 TEST_CASE("counts may be written plainly, with a suffix or an exponent") {
   CHECK(parse_count("0") == 0);
@@ -24,6 +25,17 @@ TEST_CASE("what is not a whole number in range is no count") {
                            "9223372036854775808", "1kk", "1,5k"}) {
     CAPTURE(text);
     CHECK_FALSE(parse_count(text).has_value());
+  }
+}
+
+TEST_CASE("numbers with commas between are read, and nothing else") {
+  using Numbers = std::vector<double>;
+  CHECK(parse_numbers("0.5,-1,2e1") == Numbers{0.5, -1.0, 20.0});
+  CHECK(parse_numbers("7") == Numbers{7.0});
+  for (const char* text :
+       {"", ",", "1,", ",1", "1,,2", "1 ,2", "1, 2", "x", "1,x", "nan", "1,inf", "1;2", "0x10"}) {
+    CAPTURE(text);
+    CHECK_FALSE(parse_numbers(text).has_value());
   }
 }
 

@@ -30,6 +30,7 @@ TEST_CASE("help and version are data, not errors") {
   }
   CHECK_THAT(help.out, Contains("Exit status: 0 ok, 1 failure, 2 wrong usage, 3 no device, 4 bad scene"));
   CHECK_THAT(run({"trace", "--help"}).out, Contains("bounce") && Contains("parallel") && Contains("float32"));
+  CHECK_THAT(run({"build", "--help"}).out, Contains("even over a picture's plane") && Contains("--light 0"));
   CHECK_THAT(run({"scene", "--help"}).out, Contains("atrium") && Contains("cottage-walls"));
   const auto version = run({"--version"});
   CHECK(version.status == 0);
@@ -67,6 +68,11 @@ TEST_CASE("wrong usage exits 2, says what is wrong and where help is") {
 TEST_CASE("options are checked before anything is loaded or opened") {
   CHECK(run({"build", "gen:random", "--bins", "1"}, kNoDevice).status == 2);
   CHECK(run({"validate", "gen:random", "--max-leaf", "0"}, kNoDevice).status == 2);
+  for (const char* command : {"build", "trace", "validate"}) {
+    CHECK(run({command, "gen:random", "--heuristic", "window"}, kNoDevice).status == 2);
+    CHECK(run({command, "gen:random", "--heuristic", "plane", "--direction", "down"}, kNoDevice).status == 2);
+    CHECK_THAT(run({command, "--help"}, kNoDevice).out, Contains("--heuristic") && Contains("solid-angle"));
+  }
   CHECK(run({"trace", "gen:random", "--query", "any", "--hits-out", "hits"}, kNoDevice).status == 2);
   const auto size = run({"render", "gen:random", "-o", "x.png", "--width", "20000"}, kNoDevice);
   CHECK(size.status == 2);

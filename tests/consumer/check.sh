@@ -20,14 +20,17 @@ cmake -S "$here" -B "$scratch/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE
   -DCMAKE_PREFIX_PATH="$prefix" >"$scratch/log" || { cat "$scratch/log"; exit 1; }
 cmake --build "$scratch/build" >"$scratch/log" || { cat "$scratch/log"; exit 1; }
 "$scratch/build/consumer"
+"$scratch/build/areas"
 
 echo "== through pkg-config"
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name gnomon.pc)")
 export PKG_CONFIG_PATH
 read -ra compile_flags <<<"$(pkg-config --cflags gnomon)"
 read -ra link_flags <<<"$(pkg-config --libs gnomon)"
-"$compiler" -std=c++20 "${compile_flags[@]}" "$here/main.cpp" "${link_flags[@]}" -o "$scratch/consumer"
-"$scratch/consumer"
+for program in main areas; do
+  "$compiler" -std=c++20 "${compile_flags[@]}" "$here/$program.cpp" "${link_flags[@]}" -o "$scratch/$program"
+  "$scratch/$program"
+done
 
 echo "== every header alone, with a user's strict warnings"
 cd "$prefix/include"

@@ -92,6 +92,7 @@ TEST_CASE("elementary functions are right within a few ulp and scale by powers o
     const float x = std::ldexp(random.between(1, 2), static_cast<int>(random.below(120)) - 60);
     CAPTURE(x);
     REQUIRE(gn_reciprocal_root(x) * std::sqrt(static_cast<double>(x)) == Approx(1.0).epsilon(3e-7));
+    REQUIRE(gn_rough_reciprocal_root(x) * std::sqrt(static_cast<double>(x)) == Approx(1.0).epsilon(5e-6));
     REQUIRE(gn_root(x) == Approx(std::sqrt(static_cast<double>(x))).epsilon(3e-7));
     REQUIRE(gn_reciprocal_root(x * 4.0F) == 0.5F * gn_reciprocal_root(x));
     REQUIRE(x * gn_power_near_reciprocal(x) >= 1.0F);
@@ -223,7 +224,9 @@ TEST_CASE("boxes called out of sight measure nothing, and most that measure noth
     for (int i = 0; i < 300; ++i) {
       const Box box = random_box(random, 0.05F, 5.0F);
       CAPTURE(c.name, i);
-      const bool unseen = gnomon::culled_measure(c.area, box.exact(), c.measure) == 0.0;
+      // The reference's faces cancel to a last bit or so where pitch is clamped all round.
+      const bool unseen = gnomon::culled_measure(c.area, box.exact(), c.measure) <=
+                          1e-15 * gnomon::window_measure(c.area, c.measure);
       const bool out = gn_measure_how(&m, box.lo, box.hi) == GN_SEEN_NOTHING;
       if (out) REQUIRE(unseen);
       called += out ? 1 : 0;

@@ -59,7 +59,8 @@ const char* const kHelp =
     "  --seed N          of scenes and rays (1)\n"
     "  --threads 1|all   (1)\n"
     "  --no-build        leave out the build rows\n"
-    "  --leaf N --bins N --cost-traversal X --cost-triangle X --cost-node X --cost-block X   of our trees\n";
+    "  --leaf N --bins N --cost-traversal X --cost-triangle X --cost-node X --cost-block X   of our trees\n"
+    "  --subtree N       triangles that one work-group builds alone (0: as the device likes)\n";
 
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
@@ -79,6 +80,7 @@ std::optional<Settings> settings_from(int argc, char** argv) {
       {"seed", 1, nullptr, 'S'},          {"threads", 1, nullptr, 'T'},   {"no-build", 0, nullptr, 'B'},
       {"leaf", 1, nullptr, 'l'},          {"bins", 1, nullptr, 'b'},      {"cost-traversal", 1, nullptr, 'v'},
       {"cost-triangle", 1, nullptr, 'i'}, {"cost-node", 1, nullptr, 'N'}, {"cost-block", 1, nullptr, 'K'},
+                          {"subtree", 1, nullptr, 'u'},
       {"help", 0, nullptr, 'h'},          {nullptr, 0, nullptr, 0}};
   for (int c = 0; (c = getopt_long(argc, argv, "", names, nullptr)) != -1;) {
     const auto number = [] { return std::strtoull(optarg, nullptr, 10); };
@@ -128,6 +130,9 @@ std::optional<Settings> settings_from(int argc, char** argv) {
         break;
       case 'K':
         s.collapse.cost_block = real();
+        break;
+      case 'u':
+        s.options.subtree_size = static_cast<std::uint32_t>(number());
         break;
       case 'h':
         std::fputs(kHelp, stdout);

@@ -56,19 +56,31 @@ static inline GnBinning binning_of(const GnTask* task, __global const float* tri
   return binning;
 }
 
-// gn_bin_of on three axes at once.
+// gn_bin_of on three axes at once. Four lanes and signed: one instruction; places are below 2^31, and the fourth lane is
+// nobody's.
 static inline uint3 bins_of(float8 primitive, GnBinning binning) {
-  const float3 place = ((primitive.lo.xyz + primitive.hi.xyz) - binning.base.xyz) * binning.scale.xyz;
-  return min(convert_uint3(place), (uint3)(GN_BINS - 1u));
+  const float4 place = ((primitive.lo + primitive.hi) - binning.base) * binning.scale;
+  return as_uint4(min(convert_int4(place), (int4)(GN_BINS - 1))).xyz;
 }
 #endif
+
+// bins_of on one axis, by which side of the first `planes` bins the primitive is on: truncation and comparison in one.
+static inline uint in_first_bins(float8 primitive, GnBinning binning, uint axis, uint plane) {
+#if GN_PUBLISHED_BINS
+  const uint3 place = bins_of(primitive, binning);
+  return (axis == 0u ? place.x : axis == 1u ? place.y : place.z) <= plane;
+#else
+  const float4 place = ((primitive.lo + primitive.hi) - binning.base) * binning.scale;
+  const float on_axis = axis == 0u ? place.x : axis == 1u ? place.y : place.z;
+  return on_axis < (float)(plane + 1u);
+#endif
+}
 
 static inline void clear_bins(__local GnBin* bins, __local uint* counts) {
   uint i;
   for (i = GN_LOCAL_ID; i < 3u * GN_BINS; i += GN_WGS) {
 #if GN_WGS == 1
-    vstore4((float4)(INFINITY), 0, bins[i].lo);
-    vstore4((float4)(-INFINITY), 0, bins[i].hi);
+    *(__local float8*)(bins + i) = (float8)(INFINITY);
 #else
     __local int* keys = (__local int*)(bins + i);
     int k;
@@ -79,14 +91,18 @@ static inline void clear_bins(__local GnBin* bins, __local uint* counts) {
   GN_GROUP_BARRIER();
 }
 
-static inline void add_to_bin(__local GnBin* bin, __local uint* count, float8 primitive) {
 #if GN_WGS == 1
-  const float4 lo = vload4(0, bin->lo);
-  const float4 hi = vload4(0, bin->hi);
-  vstore4(GN_VMIN(primitive.lo, lo), 0, bin->lo);
-  vstore4(GN_VMAX(primitive.hi, hi), 0, bin->hi);
+// While a serial group bins, a bin holds its lower corner and its upper one negated: one minimum grows both.
+static inline float8 with_upper_negated(float8 box) {
+  return as_float8(as_uint8(box) ^ (uint8)(0u, 0u, 0u, 0u, 0x80000000u, 0x80000000u, 0x80000000u, 0x80000000u));
+}
+static inline void add_to_bin(__local GnBin* bin, __local uint* count, float8 negated) {
+  __local float8* whole = (__local float8*)bin;
+  *whole = GN_VMIN(negated, *whole);
   *count += 1u;
+}
 #else
+static inline void add_to_bin(__local GnBin* bin, __local uint* count, float8 primitive) {
   volatile __local int* keys = (volatile __local int*)bin;
   atomic_min(keys + 0, ordered_of(primitive.s0));
   atomic_min(keys + 1, ordered_of(primitive.s1));
@@ -95,8 +111,8 @@ static inline void add_to_bin(__local GnBin* bin, __local uint* count, float8 pr
   atomic_max(keys + 5, ordered_of(primitive.s5));
   atomic_max(keys + 6, ordered_of(primitive.s6));
   atomic_inc((volatile __local uint*)count);
-#endif
 }
+#endif
 
 // Bins [begin, end) on all three axes into bins and counts (3 * GN_BINS each, axis after axis).
 static inline void bin_range(__global const float8* primitives, uint begin, uint end, GnBinning binning,
@@ -106,12 +122,22 @@ static inline void bin_range(__global const float8* primitives, uint begin, uint
   for (i = begin + GN_LOCAL_ID; i < end; i += GN_WGS) {
     const float8 primitive = primitives[i];
     const uint3 place = bins_of(primitive, binning);
-    add_to_bin(bins + place.x, counts + place.x, primitive);
-    add_to_bin(bins + GN_BINS + place.y, counts + GN_BINS + place.y, primitive);
-    add_to_bin(bins + 2u * GN_BINS + place.z, counts + 2u * GN_BINS + place.z, primitive);
+#if GN_WGS == 1
+    const float8 box = with_upper_negated(primitive);
+#else
+    const float8 box = primitive;
+#endif
+    add_to_bin(bins + place.x, counts + place.x, box);
+    add_to_bin(bins + GN_BINS + place.y, counts + GN_BINS + place.y, box);
+    add_to_bin(bins + 2u * GN_BINS + place.z, counts + 2u * GN_BINS + place.z, box);
   }
   GN_GROUP_BARRIER();
-#if GN_WGS != 1
+#if GN_WGS == 1
+  for (i = 0u; i < 3u * GN_BINS; ++i) {
+    __local float8* whole = (__local float8*)(bins + i);
+    *whole = with_upper_negated(*whole);
+  }
+#else
   for (i = GN_LOCAL_ID; i < 3u * GN_BINS * 8u; i += GN_WGS) {
     __local int* key = (__local int*)bins + i;
     *key = as_int(float_of_ordered(*key));

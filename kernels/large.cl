@@ -6,7 +6,7 @@
 __kernel void bin_chunks(__global const float8* primitives0, __global const float8* primitives1,
                          __global const float* triangles, __global const GnTask* tasks,
                          __global const GnChunk* chunks, __global GnBin* chunk_bins, __global uint* chunk_counts) {
-  __local GnBin bins[3 * GN_BINS];
+  __local GnBin bins[3 * GN_BINS] __attribute__((aligned(32)));
   __local uint counts[3 * GN_BINS];
   const uint group = (uint)get_group_id(0);
   const GnChunk chunk = chunks[group];
@@ -57,7 +57,7 @@ __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __gl
                           __global const GnBin* chunk_bins, __global const uint* chunk_counts,
                           __global GnChildren* children, __global const GnHeuristic* heuristic_in,
                           __global const float* triangles) {
-  __local GnBin bins[3 * GN_BINS];
+  __local GnBin bins[3 * GN_BINS] __attribute__((aligned(32)));
   __local uint counts[3 * GN_BINS];
   __local GnSplit best_of_axis[3];
   const uint group = (uint)get_group_id(0);

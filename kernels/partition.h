@@ -23,9 +23,8 @@ static inline GnSide side_of(const GnTask* task, GnBinning binning) {
 }
 
 static inline uint goes_left(float8 primitive, uint index, GnSide side) {
-  const uint3 place = bins_of(primitive, side.binning);
-  const uint bin = side.axis == 0u ? place.x : side.axis == 1u ? place.y : place.z;
-  return side.axis == GN_NONE ? index < side.middle : bin <= side.plane;
+  if (side.axis == GN_NONE) return index < side.middle;
+  return in_first_bins(primitive, side.binning, side.axis, side.plane);
 }
 
 // Bounds of doubled centroids of the two sides.

@@ -49,7 +49,7 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
                              __global const GnTask* roots, __global GnNode* nodes, __global uint* inner_rank,
                              __global uint* order, volatile __global uint* outcome,
                              __global const GnHeuristic* heuristic_in, __global const float* triangles) {
-  __local GnBin bins[3 * GN_BINS];
+  __local GnBin bins[3 * GN_BINS] __attribute__((aligned(32)));
   __local uint counts[3 * GN_BINS];
   __local GnSplit best_of_axis[3];
   __local GnTask stack[GN_SUBTREE_STACK];

@@ -4,6 +4,7 @@
 #define GNOMON_BIN_H
 
 #include "group.h"
+#include "sweep.h"
 #include "shared/axis_policy.h"
 
 // Which axis policy kernels are compiled for: GN_AXES_ALL leaves the others out.
@@ -92,9 +93,16 @@ static inline void clear_bins(__local GnBin* bins, __local uint* counts) {
 }
 
 #if GN_WGS == 1
-// While a serial group bins, a bin holds its lower corner and its upper one negated: one minimum grows both.
+// In a serial group's local memory a bin holds its lower corner and its upper one negated: one minimum grows both.
 static inline float8 with_upper_negated(float8 box) {
   return as_float8(as_uint8(box) ^ (uint8)(0u, 0u, 0u, 0u, 0x80000000u, 0x80000000u, 0x80000000u, 0x80000000u));
+}
+static inline void turn_bins(__local GnBin* bins) {
+  uint i;
+  for (i = 0u; i < 3u * GN_BINS; ++i) {
+    __local float8* whole = (__local float8*)(bins + i);
+    *whole = with_upper_negated(*whole);
+  }
 }
 static inline void add_to_bin(__local GnBin* bin, __local uint* count, float8 negated) {
   __local float8* whole = (__local float8*)bin;
@@ -102,6 +110,7 @@ static inline void add_to_bin(__local GnBin* bin, __local uint* count, float8 ne
   *count += 1u;
 }
 #else
+static inline void turn_bins(__local GnBin* bins) { (void)bins; }
 static inline void add_to_bin(__local GnBin* bin, __local uint* count, float8 primitive) {
   volatile __local int* keys = (volatile __local int*)bin;
   atomic_min(keys + 0, ordered_of(primitive.s0));
@@ -132,12 +141,7 @@ static inline void bin_range(__global const float8* primitives, uint begin, uint
     add_to_bin(bins + 2u * GN_BINS + place.z, counts + 2u * GN_BINS + place.z, box);
   }
   GN_GROUP_BARRIER();
-#if GN_WGS == 1
-  for (i = 0u; i < 3u * GN_BINS; ++i) {
-    __local float8* whole = (__local float8*)(bins + i);
-    *whole = with_upper_negated(*whole);
-  }
-#else
+#if GN_WGS != 1
   for (i = GN_LOCAL_ID; i < 3u * GN_BINS * 8u; i += GN_WGS) {
     __local int* key = (__local int*)bins + i;
     *key = as_int(float_of_ordered(*key));
@@ -162,17 +166,11 @@ static inline GnNodeView view_of(const GnTask* task, GnBinning binning) {
   return node;
 }
 
-// The cheapest split of all three axes, each swept by a work-item of its own where there are several.
-static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, const GnNodeView* node,
-                                     __local const GnBin* bins, __local const uint* counts,
-                                     __local GnSplit* best_of_axis) {
-  GnSplit best;
+// Every axis' cheapest split, each swept by a work-item of its own where there are several.
+static inline void sweep_axes(const GnHeuristic* heuristic, int how, const GnNodeView* node, __local const GnBin* bins,
+                              __local const uint* counts, __local GnSplit* best_of_axis) {
   uint axis;
-#if GN_WGS == 1
-  for (axis = 0u; axis < 3u; ++axis) {
-#else
   for (axis = GN_LOCAL_ID; axis < 3u; axis += GN_WGS) {
-#endif
     GnSplit split = gn_no_split();
     if ((node->usable >> axis & 1u) != 0u) {
       split = gn_sweep_axis(&heuristic->measure, how, bins + axis * GN_BINS, counts + axis * GN_BINS, GN_PLANES,
@@ -181,6 +179,26 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
     best_of_axis[axis] = split;
   }
   GN_GROUP_BARRIER();
+}
+
+// The cheapest split of all three axes.
+static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, const GnNodeView* node,
+                                     __local GnBin* bins, __local const uint* counts, __local GnSplit* best_of_axis) {
+  GnSplit best;
+  uint axis;
+#if GN_WGS == 1
+  float w[3];
+  if (gn_linear_part(&heuristic->measure, how, w)) {
+    sweep_three_axes(w, heuristic->measure.breaks_ties != 0u, bins, counts, GN_PLANES, node->usable, node->count,
+                     best_of_axis);
+  } else {
+    turn_bins(bins);
+    sweep_axes(heuristic, how, node, bins, counts, best_of_axis);
+    turn_bins(bins);
+  }
+#else
+  sweep_axes(heuristic, how, node, bins, counts, best_of_axis);
+#endif
   best = best_of_axis[0];
   for (axis = 1u; axis < 3u; ++axis) {
     const GnSplit split = best_of_axis[axis];
@@ -191,14 +209,16 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
 
 // The split the heuristic chooses; every work-item receives it.
 static inline GnSplit choose_split(const GnHeuristic* heuristic, int how, const GnNodeView* node,
-                                   __local const GnBin* bins, __local const uint* counts,
+                                   __local GnBin* bins, __local const uint* counts,
                                    __local GnSplit* best_of_axis) {
 #if GN_AXES == GN_AXES_ALL
   return cheapest_split(heuristic, how, node, bins, counts, best_of_axis);
 #else
+  turn_bins(bins);
   if (GN_LOCAL_ID == 0u) {
     best_of_axis[0] = gn_policy_split(heuristic, how, node, bins, counts, GN_PLANES, GN_BINS, 0);
   }
+  turn_bins(bins);
   GN_GROUP_BARRIER();
   return best_of_axis[0];
 #endif
@@ -208,6 +228,13 @@ static inline GnSplit choose_split(const GnHeuristic* heuristic, int how, const 
 static inline GnBoxPair box_of_bins(__local const GnBin* bins, __local const uint* counts, uint from, uint to) {
   GnBoxPair box = empty_pair();
   uint i;
+#if GN_WGS == 1
+  float8 negated = (float8)(INFINITY);
+  for (i = from; i < to; ++i) negated = GN_VMIN(*(__local const float8*)(bins + i), negated);
+  box.lo = negated.lo;
+  box.hi = -negated.hi;
+  return box;
+#endif
   for (i = from; i < to; ++i) {
     if (counts[i] == 0u) continue;
     box.lo = GN_VMIN(vload4(0, bins[i].lo), box.lo);

@@ -13,6 +13,7 @@ __kernel void bin_chunks(__global const float8* primitives0, __global const floa
   const GnTask task = tasks[chunk.task];
   uint i;
   bin_range(task.buffer == 0u ? primitives0 : primitives1, chunk.begin, chunk.end, binning_of(&task, triangles), bins, counts);
+  turn_bins(bins);
   for (i = GN_LOCAL_ID; i < 3u * GN_BINS; i += GN_WGS) {
     chunk_bins[(size_t)group * (3u * GN_BINS) + i] = bins[i];
     chunk_counts[(size_t)group * (3u * GN_BINS) + i] = counts[i];
@@ -68,6 +69,7 @@ __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __gl
   const GnNodeView node = view_of(&task, binning_of(&task, triangles));
   GnSplit split;
   merge_chunks(chunk_bins, chunk_counts, from, to, bins, counts);
+  turn_bins(bins);
   split = choose_split(&heuristic, gn_measure_how(&heuristic.measure, task.lo, task.hi), &node, bins, counts,
                        best_of_axis);
   if (GN_LOCAL_ID == 0u) {

@@ -68,14 +68,23 @@ static inline GnTwoBounds partition_range(__global const float8* from, __global 
   bounds.left = empty_pair();
   bounds.right = empty_pair();
 #if GN_WGS == 1
+  // Doubled centroids and their negatives side by side: one minimum grows a side's bounds.
+  float8 left_bounds = (float8)(INFINITY), right_bounds = (float8)(INFINITY);
   for (i = begin; i < end; ++i) {
     const float8 primitive = from[i];
     const uint left = goes_left(primitive, i, side);
+    const int8 is_left = (int8)(0 - (int)left);
+    const float8 both = with_upper_negated(primitive + primitive.s45670123);
     to[left ? left_at : right_at] = primitive;
     left_at += left;
     right_at += 1u - left;
-    grow_side(&bounds, primitive, left);
+    left_bounds = GN_VMIN(select((float8)(INFINITY), both, is_left), left_bounds);
+    right_bounds = GN_VMIN(select(both, (float8)(INFINITY), is_left), right_bounds);
   }
+  bounds.left.lo = left_bounds.lo;
+  bounds.left.hi = -left_bounds.hi;
+  bounds.right.lo = right_bounds.lo;
+  bounds.right.hi = -right_bounds.hi;
 #else
   for (i = begin; i < end; i += GN_WGS) {  // the same trips for every work-item: barriers stand inside
     const uint index = i + GN_LOCAL_ID;

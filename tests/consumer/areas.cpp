@@ -21,11 +21,12 @@ int main() {
     const gnomon::TopLevel top = gnomon::build_top_level(forest.areas, gnomon::AreaLookup::kList);
     const gnomon::DeviceTopLevel on_device = gnomon::upload_top_level(context, top, forest.shared_areas);
     const gnomon::ForestTracer tracer(context, forest, on_device);
-    const auto rays = gnomon::area_rays(forest.areas.front(),
-                                        forest.areas.front().kind() == gnomon::AreaKind::kPlane
-                                            ? gnomon::RayMeasure::kParallel
-                                            : gnomon::RayMeasure::kSolidAngle,
-                                        5000, 1);
+    // The areas as the lights have them: the forest's own are grown, so that rays from these windows start
+    // inside.
+    const gnomon::InfluenceArea& first = local_trees.front().area;
+    const bool parallel = first.kind() == gnomon::AreaKind::kPlane;
+    const auto rays = gnomon::area_rays(
+        first, parallel ? gnomon::RayMeasure::kParallel : gnomon::RayMeasure::kSolidAngle, 5000, 1);
     std::size_t served = 0;
     for (const std::uint32_t area : gnomon::AreaFinder(context, on_device).choose(rays).areas)
       served += area != GN_NONE ? 1 : 0;

@@ -144,7 +144,8 @@ static inline void test_met(GnWideWalk* walk, const GnWideRay* ray, __global con
     walk->farthest = farthest;
     walk->limit = limit_for(farthest);
   } else {
-    test_exactly(walk, ray, block, lane, 1);
+    // An edge function that overflowed to NaN hides from the largest and the smallest: nothing is certain then.
+    test_exactly(walk, ray, block, lane, nearest <= farthest ? 1 : -1);
   }
 }
 
@@ -177,7 +178,7 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
     const float8 share = 1.0f / (u + v + w);
     const float8 spread = GN_MAX8(GN_MAX8(az, bz), cz) - GN_MIN8(GN_MIN8(az, bz), cz);
     const float8 inverse = (float8)frame->inverse[kz];
-    const float8 error = (4.0f * bound * fabs(share) * spread + GN_SLAB_SLACK * z) * fabs(inverse);
+    const float8 error = ((4.0f * bound * spread + 1e-37f) * fabs(share) + GN_SLAB_SLACK * z + 1e-37f) * fabs(inverse) + 1e-37f;
     const float8 t = (u * az + v * bz + w * cz) * share * inverse;
     float nearest[8], farthest[8];
     vstore8(t - error, 0, nearest);

@@ -129,12 +129,13 @@ GN_INLINE int gn_triangle_filter(const GnRayFrame* ray, const gn_f32* v0, const 
 // What floats alone say of a triangle that gn_triangle_filter calls certainly inside (u, v, w are its edge functions, all
 // of one sign and beyond bound): where along the ray it is met, and by how much that may be wrong. t is a mean of the
 // corners' distances with weights u, v, w: errors of the weights, at most bound each, move it by no more than
-// 3 bound / |u + v + w| of the distances' spread; rounding by less than 2^-19 of the largest distance z.
+// 3 bound / |u + v + w| of the distances' spread; rounding by less than 2^-19 of the largest distance z; underflow by
+// less than 1e-37 before each multiplication.
 GN_INLINE gn_f32 gn_met_at(gn_f32 az, gn_f32 bz, gn_f32 cz, gn_f32 u, gn_f32 v, gn_f32 w, gn_f32 bound, gn_f32 z,
                            gn_f32 inverse, gn_f32* error) {
   const gn_f32 share = 1.0f / (u + v + w);
   const gn_f32 spread = gn_max(gn_max(az, bz), cz) - gn_min(gn_min(az, bz), cz);
-  *error = (4.0f * bound * gn_abs(share) * spread + GN_SLAB_SLACK * z) * gn_abs(inverse);
+  *error = ((4.0f * bound * spread + 1e-37f) * gn_abs(share) + GN_SLAB_SLACK * z + 1e-37f) * gn_abs(inverse) + 1e-37f;
   return (u * az + v * bz + w * cz) * share * inverse;
 }
 

@@ -270,6 +270,63 @@ TEST_CASE("of equally near triangles in one block, and of nearly as near ones, f
     require_equal_flavours(triangles, rays, gnomon::test::lazy_leaves_of(leaf));
 }
 
+// Sheared coordinates whose products straddle the largest float: an edge function may then be NaN.
+TEST_CASE("the flavours agree on rays whose edge functions overflow") {
+  gnomon::test::Random random(102);
+  Triangles triangles;
+  for (int i = 0; i < 200; ++i) {
+    GnTriangle t{};
+    for (float* v : {t.v0, t.v1, t.v2})
+      for (std::size_t k = 0; k < 3; ++k) v[k] = random.between(-2.8e14F, 2.8e14F);
+    triangles.push_back(t);
+  }
+  Rays rays;
+  for (int i = 0; i < 2000; ++i) {
+    const float x = 1.8446743e19F * random.between(0.9999F, 1.0001F);
+    const float y = 1.8446743e19F * random.between(0.9999F, 1.0001F);
+    rays.push_back(ray({i % 2 == 0 ? x : -x, y, random.between(-1e15F, 1e15F)},
+                       {random.between(-1e-3F, 1e-3F), random.between(-1e-3F, 1e-3F), 1}, -INFINITY));
+    // Towards the scene from as far.
+    rays.push_back(ray({x, y, 0}, {-x, -y, random.between(-1e15F, 1e15F)}));
+  }
+  require_equal_flavours(triangles, rays);
+}
+
+// Results that lie among the smallest floats, where rounding is no longer relative.
+TEST_CASE("the flavours agree on triangles and distances among the smallest floats") {
+  gnomon::test::Random random(103);
+  for (const float size : {1e-15F, 1e-3F}) {
+    for (const float depth : {1e-44F, 1e-40F, 1e-37F}) {
+      CAPTURE(size, depth);
+      Triangles triangles;
+      for (int i = 0; i < 40; ++i) {
+        const auto at = [&] {
+          return std::array<float, 3>{random.between(-size, size), random.between(-size, size),
+                                      depth * random.between(0.0F, 4.0F)};
+        };
+        triangles.push_back(gnomon::test::triangle(at(), at(), at()));
+      }
+      Rays rays;
+      for (int i = 0; i < 200; ++i) {
+        const float stretch = i % 2 == 0 ? 1.0F : 1e37F;
+        rays.push_back(ray({random.between(-size, size), random.between(-size, size), 0}, {0, 0, stretch}));
+      }
+      require_equal_flavours(triangles, rays);
+    }
+  }
+}
+
+TEST_CASE("the flavours agree on directions as small and as large as their reciprocals allow") {
+  const auto triangles = gnomon::test::soup(500, 104, 1.0F);
+  Rays rays = gnomon::test::random_rays(600, 105);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const float stretch = i % 2 == 0 ? 1e-36F : 3e38F;
+    for (float& x : rays[i].direction) x *= stretch;
+    if (i % 4 == 0) rays[i].tmin = -INFINITY;
+  }
+  require_equal_flavours(triangles, rays);
+}
+
 TEST_CASE("leaves too large for the wide form are traced by the thread flavour unless wide is demanded") {
   const auto triangles = gnomon::test::repeated(gnomon::test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 500);
   const auto tree = gnomon::build_device(context(), triangles, gnomon::test::leaves_too_large());

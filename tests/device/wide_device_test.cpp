@@ -270,6 +270,26 @@ TEST_CASE("of equally near triangles in one block, and of nearly as near ones, f
     require_equal_flavours(triangles, rays, gnomon::test::lazy_leaves_of(leaf));
 }
 
+TEST_CASE("the flavours agree on ranges that end or begin next to a hit") {
+  const auto triangles = gnomon::test::soup(1000, 106, 1.0F);
+  const Rays rays = gnomon::test::random_rays(300, 107);
+  const auto hits = require_equal_flavours(triangles, rays);
+  Rays beside;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].primitive == GN_NONE) continue;
+    GnRay r = rays[i];
+    r.tmax = std::nextafter(hits[i].t, 0.0F);
+    beside.push_back(r);
+    r.tmin = r.tmax = hits[i].t;
+    beside.push_back(r);
+    r.tmin = std::nextafter(hits[i].t, INFINITY);
+    r.tmax = INFINITY;
+    beside.push_back(r);
+  }
+  REQUIRE(beside.size() > 100);
+  require_equal_flavours(triangles, beside);
+}
+
 // Sheared coordinates whose products straddle the largest float: an edge function may then be NaN.
 TEST_CASE("the flavours agree on rays whose edge functions overflow") {
   gnomon::test::Random random(102);

@@ -8,8 +8,6 @@
 // What is inside the measured time: ours, filling nothing (rays and hits stay in device buffers) and the
 // launch; Embree's, filling an RTCRayHit per ray from the same array and writing a 16-byte hit back, as any
 // caller with a batch must.
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "embree_peer.h"
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/trace_device.h"
 #include "gnomon/scene/generators.h"
@@ -29,6 +28,8 @@ namespace {
 
 using gnomon::Hit;
 using gnomon::Ray;
+using gnomon::bench::EmbreeQuality;
+using gnomon::bench::EmbreeScene;
 using gnomon::bench::json;
 using gnomon::bench::measure;
 using gnomon::bench::Paired;
@@ -51,84 +52,6 @@ void add_rates(json& row, const Paired& times, double items, const char* unit) {
   row["ratio"] = spread_json(ratios);
 }
 
-class EmbreeScene {
- public:
-  EmbreeScene(const std::vector<gnomon::Triangle>& triangles, bool robust)
-      : triangles_(triangles), robust_(robust) {
-    device_ = rtcNewDevice("threads=1,set_affinity=0");
-  }
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
-  ~EmbreeScene() {
-    if (scene_ != nullptr) rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-
-  // Geometry from unshared corners, as we take them; the copy into Embree's buffers is inside, as our upload
-  // is.
-  void build() {
-    if (scene_ != nullptr) rtcReleaseScene(scene_);
-    scene_ = rtcNewScene(device_);
-    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_MEDIUM);
-    if (robust_) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    const std::size_t count = triangles_.size();
-    auto* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * count));
-    auto* indices = static_cast<unsigned*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, count));
-    std::copy_n(triangles_.front().v0, 9 * count, vertices);
-    for (unsigned i = 0; i < 3 * count; ++i) indices[i] = i;
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-  }
-
-  void closest(const std::vector<Ray>& rays, std::vector<Hit>& hits) const {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
-      RTCRayHit query{};
-      query.ray = load(rays[i]);
-      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      query.hit.primID = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(scene_, &context, &query);
-      hits[i] = {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
-    }
-  }
-
-  void any(const std::vector<Ray>& rays, std::vector<std::uint32_t>& occluded) const {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
-      RTCRay ray = load(rays[i]);
-      rtcOccluded1(scene_, &context, &ray);
-      occluded[i] = ray.tfar < 0.0F ? 1 : 0;
-    }
-  }
-
- private:
-  static RTCRay load(const Ray& r) {
-    RTCRay ray{};
-    ray.org_x = r.origin[0];
-    ray.org_y = r.origin[1];
-    ray.org_z = r.origin[2];
-    ray.tnear = r.tmin;
-    ray.dir_x = r.direction[0];
-    ray.dir_y = r.direction[1];
-    ray.dir_z = r.direction[2];
-    ray.tfar = r.tmax;
-    ray.mask = 0xffffffffU;
-    return ray;
-  }
-
-  const std::vector<gnomon::Triangle>& triangles_;
-  bool robust_;
-  RTCDevice device_ = nullptr;
-  RTCScene scene_ = nullptr;
-};
-
 // One scene: its rows' common part, both libraries' trees, the measurements.
 class SceneBench {
  public:
@@ -149,8 +72,8 @@ class SceneBench {
   }
 
   void run() {
-    EmbreeScene fast(scene_.triangles, false);
-    EmbreeScene robust(scene_.triangles, true);
+    EmbreeScene fast(scene_.triangles, EmbreeQuality::kMedium, false);
+    EmbreeScene robust(scene_.triangles, EmbreeQuality::kMedium, true);
     build_row(fast);
     robust.build();
     const gnomon::Tracer tracer(context_, tree_);

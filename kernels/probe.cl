@@ -3,6 +3,7 @@
 #include "shared/hit_math.h"
 #include "shared/cost_math.h"
 #include "shared/area_math.h"
+#include "shared/wide_layout.h"
 
 // From a real address: a null pointer need not have the bits of zero.
 #define GN_OFFSET(type, member) \
@@ -35,6 +36,14 @@ __kernel void probe_layout(__global uint* out) {
   out[23] = GN_OFFSET(GnArea, kind);
   out[24] = GN_OFFSET(GnArea, root);
   out[25] = GN_OFFSET(GnAreaWalk, exit);
+  out[26] = sizeof(GnWideNode);
+  out[27] = sizeof(GnTriangleBlock);
+  out[28] = sizeof(GnForest);
+  out[29] = sizeof(GnCollapseTask);
+  out[30] = GN_OFFSET(GnWideNode, links);
+  out[31] = GN_OFFSET(GnTriangleBlock, primitives);
+  out[32] = GN_OFFSET(GnForest, triangles);
+  out[33] = GN_OFFSET(GnCollapseTask, largest_leaf);
 }
 
 // x[i] y[i] z[i] -> products and sums that would differ were they fused, the division-free reciprocal, and bins.

@@ -85,13 +85,17 @@ static inline uint boxes_met(const GnWideRay* ray, __global const GnWideNode* no
   return lanes_not_above(near, far);
 }
 
+// Below infinity, where empty slots begin and gn_box_entry puts boxes that are missed: a tmin of -infinity makes far sides
+// bound nothing.
+static inline float limit_for(float t) { return gn_min(gn_slab_limit(t), FLT_MAX); }
+
 static inline void take_exact(GnWideWalk* walk, const GnHit* hit) {
   walk->best = *hit;
   walk->found = 1u;
   walk->pending = 0u;
   walk->nearest = hit->t;
   walk->farthest = hit->t;
-  walk->limit = gn_slab_limit(hit->t);
+  walk->limit = limit_for(hit->t);
 }
 
 // Decides a lane of a block exactly.
@@ -138,9 +142,10 @@ static inline void test_met(GnWideWalk* walk, const GnWideRay* ray, __global con
     walk->pending_lane = lane;
     walk->nearest = nearest;
     walk->farthest = farthest;
-    walk->limit = gn_slab_limit(farthest);
+    walk->limit = limit_for(farthest);
   } else {
-    test_exactly(walk, ray, block, lane, 1);
+    // An edge function that overflowed to NaN hides from the largest and the smallest: nothing is certain then.
+    test_exactly(walk, ray, block, lane, nearest <= farthest ? 1 : -1);
   }
 }
 
@@ -173,7 +178,7 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
     const float8 share = 1.0f / (u + v + w);
     const float8 spread = GN_MAX8(GN_MAX8(az, bz), cz) - GN_MIN8(GN_MIN8(az, bz), cz);
     const float8 inverse = (float8)frame->inverse[kz];
-    const float8 error = (4.0f * bound * fabs(share) * spread + GN_SLAB_SLACK * z) * fabs(inverse);
+    const float8 error = ((4.0f * bound * spread + 1e-37f) * fabs(share) + GN_SLAB_SLACK * z + 1e-37f) * fabs(inverse) + 1e-37f;
     const float8 t = (u * az + v * bz + w * cz) * share * inverse;
     float nearest[8], farthest[8];
     vstore8(t - error, 0, nearest);
@@ -300,7 +305,7 @@ static inline GnWideWalk start_walk(const GnRay* ray) {
   walk.best.primitive = GN_NONE;
   walk.nearest = INFINITY;
   walk.farthest = INFINITY;
-  walk.limit = gn_slab_limit(ray->tmax);
+  walk.limit = limit_for(ray->tmax);
   walk.found = 0u;
   walk.pending = 0u;
   walk.pending_lane = 0u;

@@ -35,7 +35,8 @@ class Collapser {
   Collapser(const cl::Context& context, const DeviceBvh& tree, const CollapseOptions& options)
       : context_(context), tree_(tree), options_(options) {
     inner_count_ = tree.node_count / 2;
-    limit_ = triangles_per_task(context.device(), tree.triangle_count);
+    limit_ = options.triangles_per_task != 0 ? options.triangles_per_task
+                                             : triangles_per_task(context.device(), tree.triangle_count);
     numbers_ = context.create_buffer("collapse_numbers", 5 * sizeof(std::uint32_t));
     forests_ = context.create_buffer("collapse_forests", inner_count_ * sizeof(GnForest));
     no_nodes_ = context.create_buffer("no_wide_nodes", 1);
@@ -68,7 +69,7 @@ class Collapser {
   }
 
   void weigh() {
-    const std::uint32_t limit = std::max(32U, limit_ / 4);
+    const std::uint32_t limit = std::max(options_.triangles_per_task != 0 ? 1U : 32U, limit_ / 4);
     const std::size_t most_top = most_above(inner_count_, limit);
     const auto tasks = context_.create_buffer("collapse_subtrees", (most_top + 1) * sizeof(std::uint32_t));
     const auto top = context_.create_buffer("collapse_top", most_top * sizeof(std::uint32_t));

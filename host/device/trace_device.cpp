@@ -30,8 +30,8 @@ const char* to_string(TraceFlavour flavour) {
 
 Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options)
     : context_(context), flavour_(flavour_for(context.device(), options)) {
+  if (flavour_ == TraceFlavour::kWide && !collapse(tree, options)) flavour_ = TraceFlavour::kThread;
   if (flavour_ == TraceFlavour::kWide) {
-    collapsed_ = collapse_device(context, tree);
     trace_wide(collapsed_, options);
   } else {
     trace_binary(tree, options);
@@ -46,6 +46,17 @@ Tracer::Tracer(const cl::Context& context, const DeviceWideBvh& tree, const Trac
         "the thread flavour traces binary trees, not wide ones; give it the tree before the collapse");
   }
   trace_wide(tree, options);
+}
+
+// False: the tree has no wide form, and the caller left the flavour to us.
+bool Tracer::collapse(const DeviceBvh& tree, const TraceOptions& options) {
+  try {
+    collapsed_ = collapse_device(context_, tree);
+    return true;
+  } catch (const Error& error) {
+    if (options.flavour == TraceFlavour::kWide || error.code() != ErrorCode::kInvalidArgument) throw;
+    return false;
+  }
 }
 
 void Tracer::trace_binary(const DeviceBvh& tree, const TraceOptions& options) {

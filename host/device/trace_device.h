@@ -78,6 +78,7 @@ class Tracer {
   [[nodiscard]] std::uint64_t invalid_rays() const;
 
  private:
+  [[nodiscard]] bool collapse(const DeviceBvh& tree, const TraceOptions& options);
   void trace_binary(const DeviceBvh& tree, const TraceOptions& options);
   void trace_wide(const DeviceWideBvh& tree, const TraceOptions& options);
   void set_up(const char* source);

@@ -14,6 +14,8 @@
 namespace gnomon {
 namespace {
 
+constexpr std::uint32_t kMostTrianglesPerTask = 1U << 20U;
+
 void check_cost(const char* name, float value) {
   if (!(value > 0.0F && value <= 1000.0F)) {
     throw Error(ErrorCode::kInvalidArgument, std::string("collapse option ") + name + " is " +
@@ -154,6 +156,11 @@ void throw_leaf_too_large(std::uint32_t triangles) {
 void CollapseOptions::check() const {
   check_cost("cost_node", cost_node);
   check_cost("cost_block", cost_block);
+  if (triangles_per_task > kMostTrianglesPerTask) {
+    throw Error(ErrorCode::kInvalidArgument, "collapse option triangles_per_task is " +
+                                                 std::to_string(triangles_per_task) + "; it must lie in 0.." +
+                                                 std::to_string(kMostTrianglesPerTask));
+  }
 }
 
 WideBvh collapse_reference(const Bvh& bvh, std::span<const GnTriangle> triangles,

@@ -21,6 +21,10 @@ using TriangleBlock = GnTriangleBlock;
 struct CollapseOptions {
   float cost_node = 1.0F;   // (0, 1000]
   float cost_block = 1.0F;  // of eight triangles; (0, 1000]
+
+  // How the device works, never what it makes: 0 asks the device.
+  std::uint32_t triangles_per_task = 0;  // of a subtree that one work-item writes; up to 1048576
+
   // Throws Error{kInvalidArgument} naming the option, its value and its range.
   void check() const;
 };

@@ -74,11 +74,18 @@ GN_INLINE gn_f32 gn_box_entry(const GnRayFrame* ray, const gn_f32* lo, const gn_
   return near <= far ? near : GN_INFINITY;
 }
 
-// Signs of the three edge functions, or a verdict without them: 1 certainly inside, 0 certainly outside, -1 unknown.
+// A triangle's edge functions along the ray in floats, and what bounds their errors.
+typedef struct GnEdges {
+  gn_f32 az, bz, cz;  // the corners' distances along the ray's main axis
+  gn_f32 u, v, w;
+  gn_f32 z;      // the largest distance
+  gn_f32 bound;  // of the error of u, v and w
+} GnEdges;
+
 // With z the largest distance along the ray's main axis, p the largest sheared coordinate and e = 2^-24, a sheared
 // coordinate is off by at most e(2p + 8z), an edge function by 12 e p^2 + 32 e p z + 128 e^2 z^2. Replacing p by
 // q = p + 2^-20 z makes 40 e q (q + z) an upper bound; 1e-36 covers underflow.
-GN_INLINE int gn_triangle_filter(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2) {
+GN_INLINE GnEdges gn_triangle_edges(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2) {
   const gn_u32 kx = ray->kx, ky = ray->ky, kz = ray->kz;
   const gn_f32 az = v0[kz] - ray->origin[kz];
   const gn_f32 bz = v1[kz] - ray->origin[kz];
@@ -89,30 +96,46 @@ GN_INLINE int gn_triangle_filter(const GnRayFrame* ray, const gn_f32* v0, const 
   const gn_f32 by = (v1[ky] - ray->origin[ky]) - ray->shear_y * bz;
   const gn_f32 cx = (v2[kx] - ray->origin[kx]) - ray->shear_x * cz;
   const gn_f32 cy = (v2[ky] - ray->origin[ky]) - ray->shear_y * cz;
-  const gn_f32 u = cx * by - cy * bx;
-  const gn_f32 v = ax * cy - ay * cx;
-  const gn_f32 w = bx * ay - by * ax;
-  const gn_f32 z = gn_max(gn_max(gn_abs(az), gn_abs(bz)), gn_abs(cz));
   const gn_f32 px = gn_max(gn_max(gn_abs(ax), gn_abs(bx)), gn_abs(cx));
   const gn_f32 py = gn_max(gn_max(gn_abs(ay), gn_abs(by)), gn_abs(cy));
+  const gn_f32 z = gn_max(gn_max(gn_abs(az), gn_abs(bz)), gn_abs(cz));
   const gn_f32 q = gn_max(px, py) + 9.5367432e-07f * z;
-  const gn_f32 bound = 2.3841858e-06f * q * (q + z) + 1e-36f;
-  const int positive = (u > bound) + (v > bound) + (w > bound);
-  const int negative = (u < -bound) + (v < -bound) + (w < -bound);
+  GnEdges edges;
+  edges.az = az;
+  edges.bz = bz;
+  edges.cz = cz;
+  edges.u = cx * by - cy * bx;
+  edges.v = ax * cy - ay * cx;
+  edges.w = bx * ay - by * ax;
+  edges.z = z;
+  edges.bound = 2.3841858e-06f * q * (q + z) + 1e-36f;
+  return edges;
+}
+
+// What the edge functions' signs say: 1 certainly inside, 0 certainly outside, -1 unknown.
+GN_INLINE int gn_edges_verdict(const GnEdges* e) {
+  const int positive = (e->u > e->bound) + (e->v > e->bound) + (e->w > e->bound);
+  const int negative = (e->u < -e->bound) + (e->v < -e->bound) + (e->w < -e->bound);
   if (positive > 0 && negative > 0) return 0;
   if (positive == 3 || negative == 3) return 1;
   return -1;
 }
 
+GN_INLINE int gn_triangle_filter(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2) {
+  const GnEdges edges = gn_triangle_edges(ray, v0, v1, v2);
+  return gn_edges_verdict(&edges);
+}
+
 // What floats alone say of a triangle that gn_triangle_filter calls certainly inside (u, v, w are its edge functions, all
 // of one sign and beyond bound): where along the ray it is met, and by how much that may be wrong. t is a mean of the
 // corners' distances with weights u, v, w: errors of the weights, at most bound each, move it by no more than
-// 3 bound / |u + v + w| of the distances' spread; rounding by less than 2^-19 of the largest distance z.
+// 3 bound / |u + v + w| of the distances' spread; rounding by less than 2^-19 of the largest distance z; underflow by
+// less than 1e-37 before each multiplication.
 GN_INLINE gn_f32 gn_met_at(gn_f32 az, gn_f32 bz, gn_f32 cz, gn_f32 u, gn_f32 v, gn_f32 w, gn_f32 bound, gn_f32 z,
                            gn_f32 inverse, gn_f32* error) {
   const gn_f32 share = 1.0f / (u + v + w);
   const gn_f32 spread = gn_max(gn_max(az, bz), cz) - gn_min(gn_min(az, bz), cz);
-  *error = (4.0f * bound * gn_abs(share) * spread + GN_SLAB_SLACK * z) * gn_abs(inverse);
+  *error = ((4.0f * bound * spread + 1e-37f) * gn_abs(share) + GN_SLAB_SLACK * z + 1e-37f) * gn_abs(inverse) + 1e-37f;
   return (u * az + v * bz + w * cz) * share * inverse;
 }
 

@@ -10,6 +10,7 @@
 #include "gnomon/shared/area_math.h"
 #include "gnomon/shared/cost_math.h"
 #include "gnomon/shared/hit_math.h"
+#include "gnomon/shared/wide_layout.h"
 #include "support/device.h"
 #include "support/shapes.h"
 
@@ -36,7 +37,7 @@ cl::Buffer buffer_of(const char* name, const std::vector<T>& values) {
 }  // namespace
 
 TEST_CASE("the device lays out every shared struct as the host does", "[portable][memcheck]") {
-  const cl::Buffer out = context().create_buffer("layout", 26 * sizeof(std::uint32_t));
+  const cl::Buffer out = context().create_buffer("layout", 34 * sizeof(std::uint32_t));
   run("probe_layout", 1, out);
   const std::vector<std::uint32_t> expected = {sizeof(GnTriangle),
                                                sizeof(GnLeafTriangle),
@@ -63,8 +64,16 @@ TEST_CASE("the device lays out every shared struct as the host does", "[portable
                                                sizeof(GnAreaWalk),
                                                offsetof(GnArea, kind),
                                                offsetof(GnArea, root),
-                                               offsetof(GnAreaWalk, exit)};
-  REQUIRE(context().download_values<std::uint32_t>(out, 26) == expected);
+                                               offsetof(GnAreaWalk, exit),
+                                               sizeof(GnWideNode),
+                                               sizeof(GnTriangleBlock),
+                                               sizeof(GnForest),
+                                               sizeof(GnCollapseTask),
+                                               offsetof(GnWideNode, links),
+                                               offsetof(GnTriangleBlock, primitives),
+                                               offsetof(GnForest, triangles),
+                                               offsetof(GnCollapseTask, largest_leaf)};
+  REQUIRE(context().download_values<std::uint32_t>(out, 34) == expected);
 }
 
 TEST_CASE("arithmetic that decides trees has the same bits on the device", "[portable][memcheck]") {

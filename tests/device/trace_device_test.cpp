@@ -20,10 +20,11 @@ struct Traced {
   gnomon::TraceResult any;
 };
 
-Traced trace(const std::vector<GnTriangle>& triangles, const std::vector<GnRay>& rays,
-             bool counters = false) {
+Traced trace(const std::vector<GnTriangle>& triangles, const std::vector<GnRay>& rays, bool counters = false,
+             gnomon::TraceFlavour flavour = gnomon::TraceFlavour::kAuto) {
   const auto tree = gnomon::build_device(context(), triangles);
   gnomon::TraceOptions options;
+  options.flavour = flavour;
   options.counters = counters;
   const gnomon::Tracer tracer(context(), tree, options);
   return {tracer.closest(rays), tracer.any(rays)};
@@ -187,7 +188,7 @@ TEST_CASE("hits and work counters equal the reference traversal's, bit for bit, 
   const auto triangles = gnomon::test::soup(5000, 71);
   const auto rays = gnomon::test::random_rays(3000, 72);
   const auto bvh = gnomon::build_reference(triangles);
-  const Traced traced = trace(triangles, rays, true);
+  const Traced traced = trace(triangles, rays, true, gnomon::TraceFlavour::kThread);
   const auto closest = gnomon::trace_reference(bvh, triangles, rays, false);
   const auto any = gnomon::trace_reference(bvh, triangles, rays, true);
   std::size_t differing = 0;

@@ -202,6 +202,68 @@ TEST_CASE("boxes beside, behind and beyond the range are rejected") {
   REQUIRE(entry(gnomon::test::ray({-2, 0.5F, 0.5F}, {1, 0, 0}, 3.1F)) == INFINITY);
 }
 
+// A triangle for gn_met_at: random, thin, grazing, far from the origin, tiny or huge, in turn.
+GnTriangle triangle_to_meet(int i, Random& random) {
+  const float offset = i % 5 == 3 ? 1.0e4F : 0.0F;
+  GnTriangle t = gnomon::test::soup(1, static_cast<std::uint32_t>(i), i % 7 == 0 ? 0.05F : 2.0F, -5.0F)[0];
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (i % 5 == 1) t.v2[k] = t.v1[k] + 1e-3F * (t.v2[k] - t.v1[k]);  // thin
+    for (float* v : {t.v0, t.v1, t.v2}) v[k] += offset;
+  }
+  if (i % 5 == 4) {  // almost a line seen from the target's side
+    const float along = random.between(20.0F, 200.0F);
+    t.v1[0] += along;
+    t.v2[0] += 2.0F * along;
+  }
+  return t;
+}
+
+// A ray to a point inside the triangle, from near or far.
+GnRay ray_to_meet(const GnTriangle& t, int i, Random& random) {
+  const float a = random.between(0.05F, 0.9F);
+  const float b = random.between(0.05F, 0.95F - a);
+  const float away = i % 3 == 0 ? 2.0F : i % 3 == 1 ? 30.0F : 2000.0F;
+  float target[3];
+  std::array<float, 3> origin{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    target[k] = a * t.v0[k] + b * t.v1[k] + (1.0F - a - b) * t.v2[k];
+    origin[k] = target[k] + random.between(-away, away);
+    if (i % 5 == 2) origin[k] += 1.0F * (t.v1[k] - t.v0[k]) * random.between(5, 50);  // grazing
+  }
+  GnRay ray = gnomon::test::aimed(origin, target);
+  const float stretch = std::ldexp(1.0F, static_cast<int>(random.below(41)) - 20);
+  for (float& x : ray.direction) x *= stretch;
+  return ray;
+}
+
+TEST_CASE("where floats meet a triangle that is met for certain is as far off as they say, at most") {
+  Random random(17);
+  std::uint64_t certain = 0;
+  double widest = 0.0;
+  for (int i = 0; i < 1'500'000; ++i) {
+    const GnTriangle t = triangle_to_meet(i, random);
+    const GnRay ray = ray_to_meet(t, i, random);
+    const GnRayFrame frame = gn_ray_frame(&ray);
+    const GnEdges e = gn_triangle_edges(&frame, t.v0, t.v1, t.v2);
+    if (gn_edges_verdict(&e) != 1) continue;
+    certain += 1;
+    float error = 0.0F;
+    const float at =
+        gn_met_at(e.az, e.bz, e.cz, e.u, e.v, e.w, e.bound, e.z, frame.inverse[frame.kz], &error);
+    const gnomon::ExactHit exact = gnomon::exact_intersect(ray, t);
+    const bool holds = exact.inside && static_cast<double>(at - error) <= exact.t - exact.t_error &&
+                       exact.t + exact.t_error <= static_cast<double>(at + error);
+    if (!holds) {
+      CAPTURE(i, at, error, exact.inside, exact.t, exact.t_error);
+      REQUIRE(holds);
+    }
+    widest = std::max(widest, std::fabs(at - exact.t) / static_cast<double>(error));
+  }
+  CAPTURE(widest);
+  REQUIRE(certain >= 1'000'000);
+  REQUIRE(widest > 0.01);  // the bound is within reach: a hundredth of it would be seen to fail
+}
+
 TEST_CASE("rays with NaN, infinite origins or no direction are not valid") {
   const float nan = std::nanf("");
   REQUIRE(gn_ray_is_valid(std::data({gnomon::test::ray({0, 0, 0}, {0, 0, 1})})) != 0);

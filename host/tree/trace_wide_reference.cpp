@@ -1,0 +1,197 @@
+#include "gnomon/tree/trace_wide_reference.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "gnomon/shared/hit_math.h"
+
+namespace gnomon {
+namespace {
+
+// A child to visit: where the ray enters it, its slot in the three lowest bits, so that they are told apart.
+struct Waiting {
+  std::uint32_t key;
+  std::uint32_t link;
+  [[nodiscard]] float entry() const { return std::bit_cast<float>(key & ~7U); }
+};
+
+struct Place {
+  const TriangleBlock* block;
+  std::uint32_t lane;
+};
+
+class Walk {
+ public:
+  Walk(const WideBvh& wide, const Ray& ray, bool any_hit)
+      : wide_(wide), ray_(ray), any_hit_(any_hit), frame_(gn_ray_frame(&ray)) {
+    limit_ = limit_for(ray.tmax);
+    for (int k = 0; k < 3; ++k) {
+      far_inverse_[k] = gn_slab_limit(gn_abs(frame_.inverse[k]));
+      if (frame_.inverse[k] < 0.0F) far_inverse_[k] = -far_inverse_[k];
+    }
+    far_margin_ = ray.tmin < 0.0F ? -4.0F * GN_SLAB_SLACK * ray.tmin : 0.0F;
+  }
+
+  void run() {
+    std::vector<Waiting> waiting{{0, 0}};
+    while (!waiting.empty()) {
+      const Waiting next = waiting.back();
+      waiting.pop_back();
+      if (!any_hit_ && next.entry() > std::max(limit_, 0.0F)) continue;
+      if ((next.link & GN_LEAF_LINK) == 0) {
+        push_children(wide_.nodes[next.link], waiting);
+      } else if (test_leaf(next.link)) {
+        break;
+      }
+    }
+    if (!any_hit_) settle();
+  }
+
+  Hit best{std::numeric_limits<float>::infinity(), 0.0F, 0.0F, GN_NONE};
+  GnRayCounters counters{0, 0};
+
+ private:
+  // Boxes entered at infinity are missed, as in gn_box_entry.
+  static float limit_for(float t) { return std::min(gn_slab_limit(t), std::numeric_limits<float>::max()); }
+
+  // Whether the ray may meet a slot's box, and where it enters it.
+  bool meets(const WideNode& node, std::uint32_t slot, float& entry) const {
+    float near = ray_.tmin;
+    float far = limit_;
+    for (int k = 0; k < 3; ++k) {
+      const int backwards = frame_.inverse[k] < 0.0F ? 1 : 0;
+      const float first = node.planes[2 * k + backwards][slot] - frame_.origin[k];
+      const float second = node.planes[2 * k + 1 - backwards][slot] - frame_.origin[k];
+      near = gn_max(first * frame_.inverse[k], near);
+      far = gn_min(std::fma(second, far_inverse_[k], far_margin_), far);
+    }
+    entry = near;
+    return near <= far;
+  }
+
+  // The last pushed is visited next: the nearest for closest hits, the largest for any hit.
+  void push_children(const WideNode& node, std::vector<Waiting>& waiting) {
+    const std::size_t before = waiting.size();
+    for (std::uint32_t slot = 0; slot < GN_WIDTH; ++slot) {
+      float entry = 0.0F;
+      if (node.links[slot] != GN_NONE) counters.boxes += 1;
+      if (!meets(node, slot, entry)) continue;
+      const auto bits = std::bit_cast<std::uint32_t>(gn_max(entry, 0.0F));
+      waiting.push_back({(bits & ~7U) | slot, node.links[slot]});
+    }
+    if (any_hit_) return;
+    std::sort(waiting.begin() + static_cast<std::ptrdiff_t>(before), waiting.end(),
+              [](const Waiting& a, const Waiting& b) { return a.key > b.key; });
+  }
+
+  // True when the walk is over.
+  bool test_leaf(std::uint32_t link) {
+    const std::uint32_t count = gn_link_triangles(link);
+    counters.triangles += count;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      test_triangle({&wide_.blocks[gn_link_block(link) + i / GN_WIDTH], i % GN_WIDTH});
+      if (any_hit_ && found_) return true;
+    }
+    return false;
+  }
+
+  static GnTriangle triangle_at(const Place& place) {
+    GnTriangle t{};
+    for (int k = 0; k < 3; ++k) {
+      t.v0[k] = place.block->corners[k][place.lane];
+      t.v1[k] = place.block->corners[3 + k][place.lane];
+      t.v2[k] = place.block->corners[6 + k][place.lane];
+    }
+    return t;
+  }
+
+  void test_triangle(const Place& place) {
+    const GnTriangle t = triangle_at(place);
+    const GnEdges e = gn_triangle_edges(&frame_, t.v0, t.v1, t.v2);
+    const int verdict = gn_edges_verdict(&e);
+    if (verdict == 0) return;
+    if (verdict < 0) return test_exactly(place, verdict);
+    float error = 0.0F;
+    const float at =
+        gn_met_at(e.az, e.bz, e.cz, e.u, e.v, e.w, e.bound, e.z, frame_.inverse[frame_.kz], &error);
+    test_met(place, at - error, at + error);
+  }
+
+  // A triangle that is met for certain, by floats between nearest and farthest.
+  void test_met(const Place& place, float nearest, float farthest) {
+    if (farthest < ray_.tmin || nearest > ray_.tmax) return;
+    if (found_ && nearest > farthest_) return;
+    if (!(nearest >= ray_.tmin && farthest <= ray_.tmax && (!found_ || farthest < nearest_)))
+      return test_exactly(place, 1);
+    found_ = true;
+    pending_ = true;
+    place_ = place;
+    best.primitive = place.block->primitives[place.lane];
+    nearest_ = nearest;
+    farthest_ = farthest;
+    limit_ = limit_for(farthest);
+  }
+
+  bool resolve(const Place& place, int verdict, Hit& hit) const {
+    const GnTriangle t = triangle_at(place);
+    hit.primitive = place.block->primitives[place.lane];
+    return gn_triangle_resolve(&frame_, t.v0, t.v1, t.v2, verdict, &hit) != 0;
+  }
+
+  void test_exactly(const Place& place, int verdict) {
+    Hit hit{};
+    if (!resolve(place, verdict, hit) || !(hit.t >= ray_.tmin && hit.t <= ray_.tmax)) return;
+    settle();
+    if (!found_ || gn_hit_is_nearer(&hit, &best) != 0) take(hit);
+  }
+
+  // Makes a hit that floats found exact.
+  void settle() {
+    Hit hit{};
+    if (pending_ && resolve(place_, 1, hit)) take(hit);
+  }
+
+  void take(const Hit& hit) {
+    best = hit;
+    found_ = true;
+    pending_ = false;
+    nearest_ = farthest_ = hit.t;
+    limit_ = limit_for(hit.t);
+  }
+
+  const WideBvh& wide_;
+  const Ray& ray_;
+  bool any_hit_;
+  GnRayFrame frame_;
+  float far_inverse_[3];
+  float far_margin_ = 0.0F;
+  float limit_ = 0.0F;
+  bool found_ = false;
+  bool pending_ = false;  // floats found the nearest hit so far; what it is exactly is not worked out yet
+  Place place_{};
+  float nearest_ = std::numeric_limits<float>::infinity();  // the nearest hit so far lies between
+  float farthest_ = std::numeric_limits<float>::infinity();
+};
+
+}  // namespace
+
+ReferenceTrace trace_wide_reference(const WideBvh& wide, std::span<const Ray> rays, bool any_hit) {
+  ReferenceTrace out;
+  out.hits.reserve(rays.size());
+  out.counters.reserve(rays.size());
+  for (const Ray& ray : rays) {
+    Walk walk(wide, ray, any_hit);
+    if (gn_ray_is_valid(&ray) != 0) {
+      walk.run();
+    } else {
+      out.invalid_rays += 1;
+    }
+    out.hits.push_back(walk.best);
+    out.counters.push_back(walk.counters);
+  }
+  return out;
+}
+
+}  // namespace gnomon

@@ -1,0 +1,372 @@
+// The wide form on the device: the collapse against the reference's bytes, its traversal against the binary
+// tree's bits, the reference's visits and the oracle.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+
+#include "gnomon/base/error.h"
+#include "gnomon/device/trace_device.h"
+#include "gnomon/tree/build_reference.h"
+#include "gnomon/tree/oracle.h"
+#include "gnomon/tree/trace_wide_reference.h"
+#include "support/device.h"
+#include "support/wide_shapes.h"
+
+using gnomon::TraceFlavour;
+using gnomon::test::context;
+using gnomon::test::ray;
+using Triangles = std::vector<GnTriangle>;
+using Rays = std::vector<GnRay>;
+
+namespace {
+
+struct Traced {
+  gnomon::TraceResult closest;
+  gnomon::TraceResult any;
+};
+
+Traced trace(const gnomon::DeviceBvh& tree, const Rays& rays, TraceFlavour flavour, bool portable = false,
+             bool counters = false) {
+  gnomon::TraceOptions options;
+  options.flavour = flavour;
+  options.portable = portable;
+  options.counters = counters;
+  const gnomon::Tracer tracer(context(), tree, options);
+  REQUIRE(tracer.flavour() == flavour);
+  return {tracer.closest(rays), tracer.any(rays)};
+}
+
+void require_same_answers(const Traced& a, const Traced& b) {
+  REQUIRE(a.closest.invalid_rays == b.closest.invalid_rays);
+  REQUIRE(a.any.invalid_rays == b.any.invalid_rays);
+  for (std::size_t i = 0; i < a.closest.hits.size(); ++i) {
+    CAPTURE(i, a.closest.hits[i].t, b.closest.hits[i].t, a.closest.hits[i].primitive,
+            b.closest.hits[i].primitive);
+    REQUIRE(std::memcmp(&a.closest.hits[i], &b.closest.hits[i], sizeof(GnHit)) == 0);
+    REQUIRE(a.any.occluded[i] == b.any.occluded[i]);
+    REQUIRE((a.any.occluded[i] == 1) == (a.closest.hits[i].primitive != GN_NONE));
+  }
+}
+
+// Visits and hits of the device are the reference's. Divisions may be rounded otherwise on a GPU.
+void require_reference_work(const gnomon::DeviceBvh& tree, const Triangles& triangles, const Rays& rays,
+                            const Traced& traced) {
+  if (!context().device().is_cpu || !context().device().fp64) return;
+  const auto wide = gnomon::collapse_reference(download_bvh(context(), tree), triangles);
+  const auto closest = gnomon::trace_wide_reference(wide, rays, false);
+  const auto any = gnomon::trace_wide_reference(wide, rays, true);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    CAPTURE(i);
+    REQUIRE(std::memcmp(&traced.closest.hits[i], &closest.hits[i], sizeof(GnHit)) == 0);
+    REQUIRE(traced.closest.counters[i].boxes == closest.counters[i].boxes);
+    REQUIRE(traced.closest.counters[i].triangles == closest.counters[i].triangles);
+    REQUIRE((traced.any.occluded[i] == 1) == (any.hits[i].primitive != GN_NONE));
+    REQUIRE(traced.any.counters[i].boxes == any.counters[i].boxes);
+    REQUIRE(traced.any.counters[i].triangles == any.counters[i].triangles);
+  }
+}
+
+// Returns the hits of the flavours, which are equal.
+std::vector<GnHit> require_equal_flavours(const Triangles& triangles, const Rays& rays,
+                                          const gnomon::BuildOptions& options = {}) {
+  const auto tree = gnomon::build_device(context(), triangles, options);
+  const Traced thread = trace(tree, rays, TraceFlavour::kThread);
+  const Traced wide = trace(tree, rays, TraceFlavour::kWide);
+  require_same_answers(thread, wide);
+  require_same_answers(thread, trace(tree, rays, TraceFlavour::kWide, true));
+  for (const bool portable : {false, true}) {
+    const Traced counted = trace(tree, rays, TraceFlavour::kWide, portable, true);
+    require_same_answers(thread, counted);
+    require_reference_work(tree, triangles, rays, counted);
+  }
+  return wide.closest.hits;
+}
+
+void require_faultless(const Triangles& triangles, const Rays& rays, bool aimed) {
+  const auto tree = gnomon::build_device(context(), triangles);
+  const Traced traced = trace(tree, rays, TraceFlavour::kWide);
+  gnomon::OracleOptions options;
+  options.max_rays = rays.size();
+  const auto report = gnomon::judge(triangles, rays, traced.closest.hits, traced.any.occluded, options);
+  REQUIRE(report.rays_judged == rays.size());
+  REQUIRE(report.lost == 0);
+  REQUIRE(report.any_closest_disagree == 0);
+  if (context().device().fp64 || !aimed) {
+    REQUIRE(report.mismatches() == 0);
+    REQUIRE(report.max_t_error_ulp <= 1.0);
+  }
+}
+
+Rays aimed_rays(const Triangles& triangles, std::uint32_t count, std::uint32_t seed, float offset = 0.0F) {
+  gnomon::test::Random random(seed);
+  Rays rays;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto& t = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
+    const float* a = gnomon::test::corner(t, random.below(3));
+    const float* b = gnomon::test::corner(t, random.below(3));
+    const float target[3] = {0.5F * (a[0] + b[0]), 0.5F * (a[1] + b[1]), 0.5F * (a[2] + b[2])};
+    rays.push_back(gnomon::test::aimed(
+        {offset + random.between(-5, 15), offset + random.between(-5, 15), offset + random.between(-5, 15)},
+        target));
+  }
+  return rays;
+}
+
+// Random rays whose ranges, directions and origins are awkward in turn.
+Rays awkward_rays(std::uint32_t count, std::uint32_t seed) {
+  gnomon::test::Random random(seed);
+  Rays rays = gnomon::test::random_rays(count, seed + 1);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    GnRay& r = rays[i];
+    const std::uint32_t axis = random.below(3);
+    switch (i % 10) {
+      case 0:
+        r.direction[axis] = random.below(2) == 0 ? 0.0F : -0.0F;
+        break;
+      case 1:
+        r.direction[axis] = r.direction[(axis + 1) % 3] = random.below(2) == 0 ? 0.0F : -0.0F;
+        break;
+      case 2:
+        r.tmin = random.between(-15.0F, 0.0F);
+        break;
+      case 3:
+        r.tmin = -INFINITY;
+        break;
+      case 4:
+        r.tmin = random.between(0.0F, 10.0F);
+        r.tmax = r.tmin + random.between(0.0F, 5.0F);
+        break;
+      case 5:
+        r.tmin = random.between(-20.0F, -10.0F);
+        r.tmax = random.between(-10.0F, 0.0F);
+        break;
+      case 6:
+        r.direction[axis] *= 1e-40F;
+        break;
+      case 7:
+        for (float& x : r.direction) x *= random.below(2) == 0 ? 1e-30F : 1e30F;
+        break;
+      case 8:
+        r.direction[axis] = random.below(2) == 0 ? INFINITY : std::nanf("");
+        break;
+      default:
+        r.tmax = random.between(-1.0F, 6.0F);
+    }
+  }
+  return rays;
+}
+
+}  // namespace
+
+TEST_CASE("the device's collapse has the reference's bytes, whatever the shape and the tasks", "[portable]") {
+  for (const auto& shape : gnomon::test::wide_shapes()) {
+    const auto tree = gnomon::build_device(context(), shape.triangles, shape.options);
+    const auto expected = gnomon::collapse_reference(download_bvh(context(), tree), shape.triangles);
+    for (const std::uint32_t task : {0U, 1U, 5U, 64U, 1U << 20U}) {
+      CAPTURE(shape.name, task);
+      gnomon::CollapseOptions options;
+      options.triangles_per_task = task;
+      const auto wide = download_wide(context(), collapse_device(context(), tree, options));
+      REQUIRE(tree_hash(wide) == tree_hash(expected));
+      REQUIRE(wide.depth == expected.depth);
+      REQUIRE(wide.nodes.size() == expected.nodes.size());
+    }
+  }
+}
+
+TEST_CASE("a small collapse in many tasks keeps to its buffers", "[memcheck]") {
+  const auto triangles = gnomon::test::soup(120, 91);
+  const auto tree = gnomon::build_device(context(), triangles, gnomon::test::leaves_of(2));
+  gnomon::CollapseOptions options;
+  options.triangles_per_task = 10;
+  options.cost_node = 0.5F;
+  const auto wide = download_wide(context(), collapse_device(context(), tree, options));
+  REQUIRE(tree_hash(wide) ==
+          tree_hash(gnomon::collapse_reference(download_bvh(context(), tree), triangles, options)));
+}
+
+TEST_CASE("the flavours give equal bits on a small soup", "[portable][memcheck]") {
+  const auto triangles = gnomon::test::soup(120, 92, 1.0F);
+  require_equal_flavours(triangles, gnomon::test::random_rays(40, 93), gnomon::test::lazy_leaves_of(20));
+  require_faultless(triangles, gnomon::test::random_rays(40, 93), false);
+}
+
+TEST_CASE("the flavours give equal bits, and the reference's visits, on soups") {
+  for (const float size : {0.05F, 0.5F, 4.0F}) {
+    for (const std::uint32_t leaf : {1U, 8U, 40U}) {
+      CAPTURE(size, leaf);
+      const auto triangles = gnomon::test::soup(2000, 94, size);
+      require_equal_flavours(triangles, gnomon::test::random_rays(1500, 95),
+                             gnomon::test::lazy_leaves_of(leaf));
+      require_equal_flavours(triangles, awkward_rays(1500, 96), gnomon::test::leaves_of(leaf));
+    }
+  }
+}
+
+TEST_CASE("the flavours agree, and with the oracle, on rays aimed at corners and edges far from the origin") {
+  for (const float offset : {0.0F, 1.0e3F, 1.0e5F}) {
+    CAPTURE(offset);
+    const auto triangles = gnomon::test::soup(300, 97, 0.5F, offset);
+    const Rays rays = aimed_rays(triangles, 600, 98, offset);
+    require_equal_flavours(triangles, rays);
+    require_faultless(triangles, rays, true);
+  }
+}
+
+TEST_CASE("the flavours agree on every shape") {
+  for (const auto& shape : gnomon::test::wide_shapes()) {
+    CAPTURE(shape.name);
+    Rays rays = awkward_rays(100, 99);
+    if (!shape.triangles.empty()) {
+      const Rays aimed = aimed_rays(shape.triangles, 100, 100);
+      rays.insert(rays.end(), aimed.begin(), aimed.end());
+    }
+    require_equal_flavours(shape.triangles, rays, shape.options);
+  }
+}
+
+TEST_CASE("the flavours agree on rays through lattice points and in the plane of a grid", "[portable]") {
+  const auto triangles = gnomon::test::grid(8, 2.0F);
+  Rays rays;
+  for (int i = 0; i <= 16; ++i) {
+    for (int j = 0; j <= 16; ++j) {
+      const float x = 0.5F * static_cast<float>(i);
+      const float z = 0.5F * static_cast<float>(j);
+      for (const float zero : {0.0F, -0.0F}) rays.push_back(ray({x, 7, z}, {zero, -1, zero}));
+      rays.push_back(ray({x, 2, z}, {0.3F, 1, 0.1F}));         // starts on the surface
+      rays.push_back(ray({x, 2, z}, {0.3F, 1, 0.1F}, 1e-6F));  // just behind it
+      rays.push_back(ray({x, 2, -1}, {0.1F, 0, 1}));           // in the plane
+      rays.push_back(ray({x, 7, z}, {0, -1, 0}, 5.0F, 5.0F));  // both ends of the range inclusive
+      rays.push_back(ray({x, 7, z}, {0, 1, 0}, -5.0F, -5.0F));
+      rays.push_back(ray({x, 7, z}, {0, 1, 0}, -6.0F, std::nextafter(-5.0F, -6.0F)));
+    }
+  }
+  const auto hits = require_equal_flavours(triangles, rays);
+  for (std::size_t i = 0; i < rays.size(); i += 8) {
+    CAPTURE(i);
+    REQUIRE(hits[i].t == 5.0F);
+    REQUIRE(hits[i + 2].t == 0.0F);
+    REQUIRE(hits[i + 3].primitive == GN_NONE);
+    REQUIRE(hits[i + 4].primitive == GN_NONE);
+    REQUIRE(hits[i + 5].t == 5.0F);
+    REQUIRE(hits[i + 6].t == -5.0F);
+    REQUIRE(hits[i + 7].primitive == GN_NONE);
+  }
+}
+
+TEST_CASE("of equally near triangles in one block, and of nearly as near ones, flavours report the same") {
+  Triangles triangles;
+  for (int i = 0; i < 300; ++i) {
+    float z = 20.0F;
+    for (int step = 0; step < (i * 7) % 5; ++step) z = std::nextafter(z, i % 2 == 0 ? 0.0F : 40.0F);
+    triangles.push_back(gnomon::test::triangle({-5, -5, z}, {25, -5, z}, {5, 30, z}));
+  }
+  Rays rays;
+  gnomon::test::Random random(101);
+  for (int i = 0; i < 200; ++i)
+    rays.push_back(ray({random.between(0, 10), random.between(0, 10), i % 2 == 0 ? 30.0F : -30.0F},
+                       {random.between(-0.1F, 0.1F), 0, i % 2 == 0 ? -1.0F : 1.0F}));
+  for (const std::uint32_t leaf : {1U, 8U, 255U})
+    require_equal_flavours(triangles, rays, gnomon::test::lazy_leaves_of(leaf));
+}
+
+TEST_CASE("the flavours agree on ranges that end or begin next to a hit") {
+  const auto triangles = gnomon::test::soup(1000, 106, 1.0F);
+  const Rays rays = gnomon::test::random_rays(300, 107);
+  const auto hits = require_equal_flavours(triangles, rays);
+  Rays beside;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].primitive == GN_NONE) continue;
+    GnRay r = rays[i];
+    r.tmax = std::nextafter(hits[i].t, 0.0F);
+    beside.push_back(r);
+    r.tmin = r.tmax = hits[i].t;
+    beside.push_back(r);
+    r.tmin = std::nextafter(hits[i].t, INFINITY);
+    r.tmax = INFINITY;
+    beside.push_back(r);
+  }
+  REQUIRE(beside.size() > 100);
+  require_equal_flavours(triangles, beside);
+}
+
+// Sheared coordinates whose products straddle the largest float: an edge function may then be NaN.
+TEST_CASE("the flavours agree on rays whose edge functions overflow") {
+  gnomon::test::Random random(102);
+  Triangles triangles;
+  for (int i = 0; i < 200; ++i) {
+    GnTriangle t{};
+    for (float* v : {t.v0, t.v1, t.v2})
+      for (std::size_t k = 0; k < 3; ++k) v[k] = random.between(-2.8e14F, 2.8e14F);
+    triangles.push_back(t);
+  }
+  Rays rays;
+  for (int i = 0; i < 2000; ++i) {
+    const float x = 1.8446743e19F * random.between(0.9999F, 1.0001F);
+    const float y = 1.8446743e19F * random.between(0.9999F, 1.0001F);
+    rays.push_back(ray({i % 2 == 0 ? x : -x, y, random.between(-1e15F, 1e15F)},
+                       {random.between(-1e-3F, 1e-3F), random.between(-1e-3F, 1e-3F), 1}, -INFINITY));
+    // Towards the scene from as far.
+    rays.push_back(ray({x, y, 0}, {-x, -y, random.between(-1e15F, 1e15F)}));
+  }
+  require_equal_flavours(triangles, rays);
+}
+
+// Results that lie among the smallest floats, where rounding is no longer relative.
+TEST_CASE("the flavours agree on triangles and distances among the smallest floats") {
+  gnomon::test::Random random(103);
+  for (const float size : {1e-15F, 1e-3F}) {
+    for (const float depth : {1e-44F, 1e-40F, 1e-37F}) {
+      CAPTURE(size, depth);
+      Triangles triangles;
+      for (int i = 0; i < 40; ++i) {
+        const auto at = [&] {
+          return std::array<float, 3>{random.between(-size, size), random.between(-size, size),
+                                      depth * random.between(0.0F, 4.0F)};
+        };
+        triangles.push_back(gnomon::test::triangle(at(), at(), at()));
+      }
+      Rays rays;
+      for (int i = 0; i < 200; ++i) {
+        const float stretch = i % 2 == 0 ? 1.0F : 1e37F;
+        rays.push_back(ray({random.between(-size, size), random.between(-size, size), 0}, {0, 0, stretch}));
+      }
+      require_equal_flavours(triangles, rays);
+    }
+  }
+}
+
+TEST_CASE("the flavours agree on directions as small and as large as their reciprocals allow") {
+  const auto triangles = gnomon::test::soup(500, 104, 1.0F);
+  Rays rays = gnomon::test::random_rays(600, 105);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const float stretch = i % 2 == 0 ? 1e-36F : 3e38F;
+    for (float& x : rays[i].direction) x *= stretch;
+    if (i % 4 == 0) rays[i].tmin = -INFINITY;
+  }
+  require_equal_flavours(triangles, rays);
+}
+
+TEST_CASE("leaves too large for the wide form are traced by the thread flavour unless wide is demanded") {
+  const auto triangles = gnomon::test::repeated(gnomon::test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 500);
+  const auto tree = gnomon::build_device(context(), triangles, gnomon::test::leaves_too_large());
+  const gnomon::Tracer tracer(context(), tree);
+  REQUIRE(tracer.flavour() == TraceFlavour::kThread);
+  REQUIRE(tracer.closest(Rays{ray({0.2F, 0.2F, 1}, {0, 0, -1})}).hits[0].primitive == 0);
+  gnomon::TraceOptions options;
+  options.flavour = TraceFlavour::kWide;
+  REQUIRE_THROWS_WITH(gnomon::Tracer(context(), tree, options), Catch::Contains("leaf of 500 triangles"));
+}
+
+TEST_CASE("a wide tree is not traced by the thread flavour, nor in passes", "[portable]") {
+  const auto tree = gnomon::build_device(context(), gnomon::test::soup(20, 1));
+  const auto wide = collapse_device(context(), tree);
+  gnomon::TraceOptions options;
+  options.step_limit = 10;
+  REQUIRE_THROWS_AS(gnomon::Tracer(context(), wide, options), gnomon::Error);
+  options.step_limit = 0;
+  options.flavour = TraceFlavour::kThread;
+  REQUIRE_THROWS_AS(gnomon::Tracer(context(), wide, options), gnomon::Error);
+  options.flavour = TraceFlavour::kAuto;
+  REQUIRE(gnomon::Tracer(context(), wide, options).flavour() == TraceFlavour::kWide);
+}

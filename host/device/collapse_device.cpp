@@ -18,12 +18,13 @@ std::uint32_t triangles_per_task(const cl::DeviceInfo& device, std::uint32_t tri
       std::clamp<std::uint64_t>(share, least, std::max<std::uint64_t>(least, 8192)));
 }
 
-// Loop turns that one triangle costs in the slowest kernel, at most; a device's vector unit may run 16 side
-// by side.
-constexpr std::uint64_t kTurnsPerTriangle = 1024;
+// Loop turns that one triangle costs in the slowest kernel: a node of the binary tree is opened in about 100,
+// written with its boxes and triangles in as many, and a device's vector unit may do several subtrees side by
+// side.
+constexpr std::uint64_t kTurnsPerTriangle = 512;
 
 void heed_loop_limit(const cl::DeviceInfo& device, std::uint32_t triangles) {
-  if (device.loop_limit == 0 || triangles * kTurnsPerTriangle <= device.loop_limit * 64ULL) return;
+  if (device.loop_limit == 0 || triangles * kTurnsPerTriangle <= device.loop_limit) return;
   throw Error(ErrorCode::kInvalidArgument,
               device.name + " ends loops after " + std::to_string(device.loop_limit) +
                   " turns, too few to make a wide tree of " + std::to_string(triangles) +

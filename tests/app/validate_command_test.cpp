@@ -85,10 +85,12 @@ TEST_CASE("the reference builder is asked on large scenes only on demand") {
 }
 
 TEST_CASE("kernels that lose hits near the edges of triangles are caught") {
-  // What the float filter leaves undecided is taken for a miss, and it leaves more undecided.
-  const BrokenKernels broken(
-      {{"shared/hit_math.h", "  return -1;", "  return 0;"},
-       {"shared/hit_math.h", "const gn_f32 bound = ", "const gn_f32 bound = 4096.0f * "}});
+  // What the float filter leaves undecided is taken for a miss, and it leaves more undecided, in every
+  // flavour.
+  const BrokenKernels broken({{"shared/hit_math.h", "  return -1;", "  return 0;"},
+                              {"shared/hit_math.h", "edges.bound = ", "edges.bound = 4096.0f * "},
+                              {"trace_wide.cl", "const float8 bound = ", "const float8 bound = 4096.0f * "},
+                              {"trace_wide.cl", "test_exactly(walk, ray, block, lane, -1);", ";"}});
   const auto outcome = run(kValidate, broken.setup());
   CAPTURE(outcome.out, outcome.err);
   REQUIRE(outcome.status == 6);
@@ -129,10 +131,11 @@ TEST_CASE("kernels that build boxes too small are caught by the tree alone") {
 
 TEST_CASE("kernels that do not compile, or are not there, are failures that say so") {
   const BrokenKernels broken(
-      {{"trace.cl", "__kernel void trace_closest(", "__kernel void trace_closest(what "}});
+      {{"trace.cl", "__kernel void trace_closest(", "__kernel void trace_closest(what "},
+       {"trace_wide.cl", "__kernel void trace_closest(", "__kernel void trace_closest(what "}});
   const auto outcome = run(kValidate, broken.setup());
   CHECK(outcome.status == 1);
-  CHECK_THAT(outcome.err, Contains("build log") && Contains("trace.cl"));
+  CHECK_THAT(outcome.err, Contains("build log") && Contains("trace_wide.cl"));
   const Folder empty;
   const auto missing = run(kValidate, {{{"GNOMON_KERNELS", empty.path().string()}}, false, {}, {}});
   CHECK(missing.status == 1);

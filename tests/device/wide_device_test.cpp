@@ -158,7 +158,8 @@ Rays awkward_rays(std::uint32_t count, std::uint32_t seed) {
 
 }  // namespace
 
-TEST_CASE("the device's collapse has the reference's bytes, whatever the shape and the tasks", "[portable]") {
+TEST_CASE("the device's collapse has the reference's bytes, whatever the shape and the tasks",
+          "[portable][unlimited]") {
   for (const auto& shape : gnomon::test::wide_shapes()) {
     const auto tree = gnomon::build_device(context(), shape.triangles, shape.options);
     const auto expected = gnomon::collapse_reference(download_bvh(context(), tree), shape.triangles);
@@ -174,7 +175,7 @@ TEST_CASE("the device's collapse has the reference's bytes, whatever the shape a
   }
 }
 
-TEST_CASE("a small collapse in many tasks keeps to its buffers", "[memcheck]") {
+TEST_CASE("a small collapse in many tasks keeps to its buffers", "[memcheck][unlimited]") {
   const auto triangles = gnomon::test::soup(120, 91);
   const auto tree = gnomon::build_device(context(), triangles, gnomon::test::leaves_of(2));
   gnomon::CollapseOptions options;
@@ -191,7 +192,7 @@ TEST_CASE("the flavours give equal bits on a small soup", "[portable][memcheck]"
   require_faultless(triangles, gnomon::test::random_rays(40, 93), false);
 }
 
-TEST_CASE("the flavours give equal bits, and the reference's visits, on soups") {
+TEST_CASE("the flavours give equal bits, and the reference's visits, on soups", "[unlimited]") {
   for (const float size : {0.05F, 0.5F, 4.0F}) {
     for (const std::uint32_t leaf : {1U, 8U, 40U}) {
       CAPTURE(size, leaf);
@@ -203,7 +204,8 @@ TEST_CASE("the flavours give equal bits, and the reference's visits, on soups") 
   }
 }
 
-TEST_CASE("the flavours agree, and with the oracle, on rays aimed at corners and edges far from the origin") {
+TEST_CASE("the flavours agree, and with the oracle, on rays aimed at corners and edges far from the origin",
+          "[unlimited]") {
   for (const float offset : {0.0F, 1.0e3F, 1.0e5F}) {
     CAPTURE(offset);
     const auto triangles = gnomon::test::soup(300, 97, 0.5F, offset);
@@ -213,7 +215,7 @@ TEST_CASE("the flavours agree, and with the oracle, on rays aimed at corners and
   }
 }
 
-TEST_CASE("the flavours agree on every shape") {
+TEST_CASE("the flavours agree on every shape", "[unlimited]") {
   for (const auto& shape : gnomon::test::wide_shapes()) {
     CAPTURE(shape.name);
     Rays rays = awkward_rays(100, 99);
@@ -225,7 +227,8 @@ TEST_CASE("the flavours agree on every shape") {
   }
 }
 
-TEST_CASE("the flavours agree on rays through lattice points and in the plane of a grid", "[portable]") {
+TEST_CASE("the flavours agree on rays through lattice points and in the plane of a grid",
+          "[portable][unlimited]") {
   const auto triangles = gnomon::test::grid(8, 2.0F);
   Rays rays;
   for (int i = 0; i <= 16; ++i) {
@@ -254,7 +257,8 @@ TEST_CASE("the flavours agree on rays through lattice points and in the plane of
   }
 }
 
-TEST_CASE("of equally near triangles in one block, and of nearly as near ones, flavours report the same") {
+TEST_CASE("of equally near triangles in one block, and of nearly as near ones, flavours report the same",
+          "[unlimited]") {
   Triangles triangles;
   for (int i = 0; i < 300; ++i) {
     float z = 20.0F;
@@ -270,7 +274,7 @@ TEST_CASE("of equally near triangles in one block, and of nearly as near ones, f
     require_equal_flavours(triangles, rays, gnomon::test::lazy_leaves_of(leaf));
 }
 
-TEST_CASE("the flavours agree on ranges that end or begin next to a hit") {
+TEST_CASE("the flavours agree on ranges that end or begin next to a hit", "[unlimited]") {
   const auto triangles = gnomon::test::soup(1000, 106, 1.0F);
   const Rays rays = gnomon::test::random_rays(300, 107);
   const auto hits = require_equal_flavours(triangles, rays);
@@ -291,7 +295,7 @@ TEST_CASE("the flavours agree on ranges that end or begin next to a hit") {
 }
 
 // Sheared coordinates whose products straddle the largest float: an edge function may then be NaN.
-TEST_CASE("the flavours agree on rays whose edge functions overflow") {
+TEST_CASE("the flavours agree on rays whose edge functions overflow", "[unlimited]") {
   gnomon::test::Random random(102);
   Triangles triangles;
   for (int i = 0; i < 200; ++i) {
@@ -313,7 +317,7 @@ TEST_CASE("the flavours agree on rays whose edge functions overflow") {
 }
 
 // Results that lie among the smallest floats, where rounding is no longer relative.
-TEST_CASE("the flavours agree on triangles and distances among the smallest floats") {
+TEST_CASE("the flavours agree on triangles and distances among the smallest floats", "[unlimited]") {
   gnomon::test::Random random(103);
   for (const float size : {1e-15F, 1e-3F}) {
     for (const float depth : {1e-44F, 1e-40F, 1e-37F}) {
@@ -336,7 +340,8 @@ TEST_CASE("the flavours agree on triangles and distances among the smallest floa
   }
 }
 
-TEST_CASE("the flavours agree on directions as small and as large as their reciprocals allow") {
+TEST_CASE("the flavours agree on directions as small and as large as their reciprocals allow",
+          "[unlimited]") {
   const auto triangles = gnomon::test::soup(500, 104, 1.0F);
   Rays rays = gnomon::test::random_rays(600, 105);
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -347,7 +352,8 @@ TEST_CASE("the flavours agree on directions as small and as large as their recip
   require_equal_flavours(triangles, rays);
 }
 
-TEST_CASE("leaves too large for the wide form are traced by the thread flavour unless wide is demanded") {
+TEST_CASE("leaves too large for the wide form are traced by the thread flavour unless wide is demanded",
+          "[unlimited]") {
   const auto triangles = gnomon::test::repeated(gnomon::test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 500);
   const auto tree = gnomon::build_device(context(), triangles, gnomon::test::leaves_too_large());
   const gnomon::Tracer tracer(context(), tree);
@@ -369,4 +375,16 @@ TEST_CASE("a wide tree is not traced by the thread flavour, nor in passes", "[po
   REQUIRE_THROWS_AS(gnomon::Tracer(context(), wide, options), gnomon::Error);
   options.flavour = TraceFlavour::kAuto;
   REQUIRE(gnomon::Tracer(context(), wide, options).flavour() == TraceFlavour::kWide);
+}
+
+TEST_CASE("a device that ends loops is not asked for large wide trees", "[portable]") {
+  const auto tree = gnomon::build_device(context(), gnomon::test::soup(600, 1));
+  const bool ends_loops = context().device().loop_limit != 0;
+  const gnomon::Tracer tracer(context(), tree);
+  REQUIRE((tracer.flavour() == TraceFlavour::kThread) == (ends_loops || !context().device().is_cpu));
+  if (ends_loops) {
+    REQUIRE_THROWS_WITH(collapse_device(context(), tree), Catch::Contains("ends loops"));
+  } else {
+    REQUIRE(collapse_device(context(), tree).triangle_count == 600);
+  }
 }

@@ -189,7 +189,7 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
 #if GN_WGS == 1
   float w[3];
   if (gn_linear_part(&heuristic->measure, how, w)) {
-    sweep_three_axes(w, heuristic->measure.breaks_ties != 0u, bins, counts, GN_PLANES, node->usable, node->count,
+    sweep_three_axes(w, heuristic->measure.breaks_ties != 0u, bins, counts, GN_PLANES, node->count,
                      best_of_axis);
   } else {
     turn_bins(bins);

@@ -37,9 +37,10 @@ static inline int4 counts_at(__local const uint* counts, uint bin) {
 
 #define GN_BIN_AT(bins, axis, bin) (*(__local const float8*)((bins) + (axis)*GN_BINS + (bin)))
 
-// The cheapest split of every axis, to best_of_axis; axis == GN_NONE where there is none. w: the measure's face weights.
+// The cheapest split of every axis, to best_of_axis; axis == GN_NONE where there is none: on an axis without extent all
+// are in the first bin, and no plane divides them. w: the measure's face weights.
 static inline void sweep_three_axes(const float* w, int breaks_ties, __local const GnBin* bins,
-                                    __local const uint* counts, uint plane_count, uint usable, uint count,
+                                    __local const uint* counts, uint plane_count, uint count,
                                     __local GnSplit* best_of_axis) {
   float4 right_cost[GN_BINS], right_measure[GN_BINS], right_tie[GN_BINS];
   float8 x = (float8)(INFINITY), y = x, z = x;
@@ -97,7 +98,7 @@ static inline void sweep_three_axes(const float* w, int breaks_ties, __local con
     vstore4(best_seen, 0, left_counts);
     for (axis = 0u; axis < 3u; ++axis) {
       GnSplit split = gn_no_split();
-      if (planes[axis] >= 0 && (usable >> axis & 1u) != 0u) {
+      if (planes[axis] >= 0) {
         split.cost = costs[axis];
         split.axis = axis;
         split.plane = (uint)planes[axis];

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gnomon/device/build_device.h"
+#include "gnomon/shared/cost_math.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/bvh_check.h"
 #include "support/device.h"
@@ -53,6 +54,34 @@ TEST_CASE("the cooperative flavour builds the same tree", "[portable]") {
     require_same(triangles, cut(16, 32, 64));
   }
   require_same(gnomon::test::soup(1500, 51), cut(16, 256, 200));
+}
+
+TEST_CASE("triangles whose middles lie on the planes between bins go to the side they were binned on",
+          "[portable]") {
+  // One middle per place k whose bin number comes out as k exactly; a rounding away from it would test
+  // nothing.
+  for (const float extent : {16.0F, 24.0F, 1.0F, 0.7F}) {
+    CAPTURE(extent);
+    const float scale = gn_bin_scale(0.0F, 2.0F * extent, 16);
+    std::vector<GnTriangle> triangles;
+    int on_planes = 0;
+    for (int k = 0; k <= 16; ++k) {
+      float x = static_cast<float>(k) * extent / 16.0F;
+      for (int i = 0; i < 8 && 2.0F * x * scale < static_cast<float>(k); ++i)
+        x = std::nextafter(x, 2.0F * extent);
+      on_planes += k > 0 && k < 16 && 2.0F * x * scale == static_cast<float>(k) ? 1 : 0;
+      if (k == 16) x = extent;
+      for (int copy = 0; copy < 1 + k % 3; ++copy)
+        triangles.push_back(gnomon::test::triangle({x, 0, 0}, {x, 1, 0}, {x, 0, 1}));
+    }
+    REQUIRE(on_planes >= 8);
+    BuildOptions options = cut(1, 0, 0);
+    options.max_leaf_size = 1;
+    require_same(triangles, options);
+    options = cut(1, 32, 64);
+    options.max_leaf_size = 1;
+    require_same(triangles, options);
+  }
 }
 
 // Few triangles: the simulator that watches every access takes its time.

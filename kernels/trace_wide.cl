@@ -6,6 +6,7 @@
 #include "shared/hit_math.h"
 #include "shared/wide_layout.h"
 #include "eight.h"
+#include "load_ray.h"
 
 // Keeps rare work from taking registers from the loop around it.
 #define GN_OUT_OF_LINE __attribute__((noinline))
@@ -281,20 +282,6 @@ static inline void walk_any(GnWideWalk* walk, const GnWideRay* ray, __global con
     height -= 1u;
     current = links[height];
   }
-}
-
-static inline GnRay load_ray(__global const float8* rays, uint index) {
-  const float8 r = rays[index];
-  GnRay ray;
-  ray.origin[0] = r.s0;
-  ray.origin[1] = r.s1;
-  ray.origin[2] = r.s2;
-  ray.tmin = r.s3;
-  ray.direction[0] = r.s4;
-  ray.direction[1] = r.s5;
-  ray.direction[2] = r.s6;
-  ray.tmax = r.s7;
-  return ray;
 }
 
 static inline GnWideWalk start_walk(const GnRay* ray) {

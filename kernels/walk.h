@@ -8,6 +8,8 @@
 #ifndef GNOMON_WALK_H
 #define GNOMON_WALK_H
 
+#include "load_ray.h"
+
 #ifndef GN_STACK_SIZE
 #define GN_STACK_SIZE 96
 #endif
@@ -114,20 +116,6 @@ static inline void traverse(GnWalk* walk, GnStack* stack, const GnRay* ray, __gl
   }
   walk->height = height;
   walk->current = current;
-}
-
-static inline GnRay load_ray(__global const float8* rays, uint index) {
-  const float8 r = rays[index];
-  GnRay ray;
-  ray.origin[0] = r.s0;
-  ray.origin[1] = r.s1;
-  ray.origin[2] = r.s2;
-  ray.tmin = r.s3;
-  ray.direction[0] = r.s4;
-  ray.direction[1] = r.s5;
-  ray.direction[2] = r.s6;
-  ray.tmax = r.s7;
-  return ray;
 }
 
 static inline GnWalk start_walk(const GnRay* ray) {

@@ -65,7 +65,7 @@ static inline uint3 bins_of(float8 primitive, GnBinning binning) {
 }
 #endif
 
-// bins_of on one axis, by which side of the first `planes` bins the primitive is on: truncation and comparison in one.
+// Whether a primitive is in one of the bins [0, plane] of an axis: bins_of, its truncation and the comparison in one.
 static inline uint in_first_bins(float8 primitive, GnBinning binning, uint axis, uint plane) {
 #if GN_PUBLISHED_BINS
   const uint3 place = bins_of(primitive, binning);
@@ -189,8 +189,7 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
 #if GN_WGS == 1
   float w[3];
   if (gn_linear_part(&heuristic->measure, how, w)) {
-    sweep_three_axes(w, heuristic->measure.breaks_ties != 0u, bins, counts, GN_PLANES, node->count,
-                     best_of_axis);
+    sweep_three_axes(w, heuristic->measure.breaks_ties != 0u, bins, counts, GN_PLANES, node->count, best_of_axis);
   } else {
     turn_bins(bins);
     sweep_axes(heuristic, how, node, bins, counts, best_of_axis);
@@ -224,8 +223,8 @@ static inline GnSplit choose_split(const GnHeuristic* heuristic, int how, const 
 #endif
 }
 
-// Union of the boxes of bins [from, to) of one axis.
-static inline GnBoxPair box_of_bins(__local const GnBin* bins, __local const uint* counts, uint from, uint to) {
+// Union of the boxes of bins [from, to) of one axis. Empty bins add nothing in either form.
+static inline GnBoxPair box_of_bins(__local const GnBin* bins, uint from, uint to) {
   GnBoxPair box = empty_pair();
   uint i;
 #if GN_WGS == 1
@@ -233,13 +232,12 @@ static inline GnBoxPair box_of_bins(__local const GnBin* bins, __local const uin
   for (i = from; i < to; ++i) negated = GN_VMIN(*(__local const float8*)(bins + i), negated);
   box.lo = negated.lo;
   box.hi = -negated.hi;
-  return box;
-#endif
+#else
   for (i = from; i < to; ++i) {
-    if (counts[i] == 0u) continue;
     box.lo = GN_VMIN(vload4(0, bins[i].lo), box.lo);
     box.hi = GN_VMAX(vload4(0, bins[i].hi), box.hi);
   }
+#endif
   return box;
 }
 

@@ -82,9 +82,8 @@ __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __gl
     task.right_measure = split.right_measure;
     if (!halve) {
       __local const GnBin* axis_bins = bins + split.axis * GN_BINS;
-      __local const uint* axis_counts = counts + split.axis * GN_BINS;
-      store_bounds(&children[group].left_box, box_of_bins(axis_bins, axis_counts, 0u, split.plane + 1u));
-      store_bounds(&children[group].right_box, box_of_bins(axis_bins, axis_counts, split.plane + 1u, GN_BINS));
+      store_bounds(&children[group].left_box, box_of_bins(axis_bins, 0u, split.plane + 1u));
+      store_bounds(&children[group].right_box, box_of_bins(axis_bins, split.plane + 1u, GN_BINS));
     }
     left_at = task.begin;
     right_at = task.begin + task.left_count;

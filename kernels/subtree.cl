@@ -115,9 +115,8 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
         __local GnTask* right_task = stack + (left_waits ? height : height - 1u);
         if (!halved) {
           __local const GnBin* axis_bins = bins + task.axis * GN_BINS;
-          __local const uint* axis_counts = counts + task.axis * GN_BINS;
-          left = box_of_bins(axis_bins, axis_counts, 0u, task.plane + 1u);
-          right = box_of_bins(axis_bins, axis_counts, task.plane + 1u, GN_BINS);
+          left = box_of_bins(axis_bins, 0u, task.plane + 1u);
+          right = box_of_bins(axis_bins, task.plane + 1u, GN_BINS);
         }
         set_task_bounds(left_task, left, sides.left);
         left_task->begin = task.begin;

@@ -1,8 +1,8 @@
 // Batched ray tracing over the wide tree, eight boxes or eight triangles a step: the flavour for CPUs. A work-item traces
 // a run of rays one after the other, in a work-group of its own: compilers that loop over a group's work-items give
-// each its own copy of everything private, which then leaves the cache. Closest hit visits children by distance, any hit the largest first. Hits are those of trace.cl, bit for bit.
-// Options: GN_WIDE_STACK (at least 7 * depth of the wide tree + 8), GN_COUNTERS, GN_RAYS_PER_ITEM,
-// GN_PORTABLE (eight.h).
+// each its own copy of everything private, which then leaves the cache. Closest hit visits children by distance, any
+// hit the largest first. Hits are those of trace.cl, bit for bit.
+// Options: GN_WIDE_STACK (at least 7 * depth of the wide tree + 8), GN_COUNTERS, GN_RAYS_PER_ITEM, GN_PORTABLE (eight.h).
 #include "shared/hit_math.h"
 #include "shared/wide_layout.h"
 #include "eight.h"
@@ -86,8 +86,8 @@ static inline uint boxes_met(const GnWideRay* ray, __global const GnWideNode* no
   return lanes_not_above(near, far);
 }
 
-// Below infinity, where empty slots begin and gn_box_entry puts boxes that are missed: a tmin of -infinity makes far sides
-// bound nothing.
+// Below infinity, where empty slots begin and gn_box_entry puts boxes that are missed: a tmin of -infinity makes far
+// sides bound nothing.
 static inline float limit_for(float t) { return gn_min(gn_slab_limit(t), FLT_MAX); }
 
 static inline void take_exact(GnWideWalk* walk, const GnHit* hit) {
@@ -170,8 +170,8 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
   const float8 z = GN_MAX8(GN_MAX8(fabs(az), fabs(bz)), fabs(cz));
   const float8 px = GN_MAX8(GN_MAX8(fabs(ax), fabs(bx)), fabs(cx));
   const float8 py = GN_MAX8(GN_MAX8(fabs(ay), fabs(by)), fabs(cy));
-  const float8 q = GN_MAX8(px, py) + 9.5367432e-07f * z;
-  const float8 bound = 2.3841858e-06f * q * (q + z) + 1e-36f;
+  const float8 q = GN_MAX8(px, py) + GN_EDGE_SHIFT * z;
+  const float8 bound = GN_EDGE_ERROR * q * (q + z) + GN_EDGE_UNDERFLOW;
   const float8 largest = GN_MAX8(GN_MAX8(u, v), w), smallest = GN_MIN8(GN_MIN8(u, v), w);
   uint met = ~(lanes_above(largest, bound) & lanes_above(-bound, smallest)) & (255u >> (8u - count));
   if (met != 0u) {
@@ -179,7 +179,9 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
     const float8 share = 1.0f / (u + v + w);
     const float8 spread = GN_MAX8(GN_MAX8(az, bz), cz) - GN_MIN8(GN_MIN8(az, bz), cz);
     const float8 inverse = (float8)frame->inverse[kz];
-    const float8 error = ((4.0f * bound * spread + 1e-37f) * fabs(share) + GN_SLAB_SLACK * z + 1e-37f) * fabs(inverse) + 1e-37f;
+    const float8 error = ((4.0f * bound * spread + GN_MET_UNDERFLOW) * fabs(share) + GN_SLAB_SLACK * z + GN_MET_UNDERFLOW) *
+                             fabs(inverse) +
+                         GN_MET_UNDERFLOW;
     const float8 t = (u * az + v * bz + w * cz) * share * inverse;
     float nearest[8], farthest[8];
     vstore8(t - error, 0, nearest);

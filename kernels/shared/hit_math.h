@@ -82,6 +82,12 @@ typedef struct GnEdges {
   gn_f32 bound;  // of the error of u, v and w
 } GnEdges;
 
+// Bounds of what rounding and underflow do to edge functions and distances, explained where they are used.
+#define GN_EDGE_SHIFT 9.5367432e-07f   // 2^-20
+#define GN_EDGE_ERROR 2.3841858e-06f   // 40 * 2^-24
+#define GN_EDGE_UNDERFLOW 1e-36f
+#define GN_MET_UNDERFLOW 1e-37f
+
 // With z the largest distance along the ray's main axis, p the largest sheared coordinate and e = 2^-24, a sheared
 // coordinate is off by at most e(2p + 8z), an edge function by 12 e p^2 + 32 e p z + 128 e^2 z^2. Replacing p by
 // q = p + 2^-20 z makes 40 e q (q + z) an upper bound; 1e-36 covers underflow.
@@ -99,7 +105,7 @@ GN_INLINE GnEdges gn_triangle_edges(const GnRayFrame* ray, const gn_f32* v0, con
   const gn_f32 px = gn_max(gn_max(gn_abs(ax), gn_abs(bx)), gn_abs(cx));
   const gn_f32 py = gn_max(gn_max(gn_abs(ay), gn_abs(by)), gn_abs(cy));
   const gn_f32 z = gn_max(gn_max(gn_abs(az), gn_abs(bz)), gn_abs(cz));
-  const gn_f32 q = gn_max(px, py) + 9.5367432e-07f * z;
+  const gn_f32 q = gn_max(px, py) + GN_EDGE_SHIFT * z;
   GnEdges edges;
   edges.az = az;
   edges.bz = bz;
@@ -108,7 +114,7 @@ GN_INLINE GnEdges gn_triangle_edges(const GnRayFrame* ray, const gn_f32* v0, con
   edges.v = ax * cy - ay * cx;
   edges.w = bx * ay - by * ax;
   edges.z = z;
-  edges.bound = 2.3841858e-06f * q * (q + z) + 1e-36f;
+  edges.bound = GN_EDGE_ERROR * q * (q + z) + GN_EDGE_UNDERFLOW;
   return edges;
 }
 
@@ -135,7 +141,9 @@ GN_INLINE gn_f32 gn_met_at(gn_f32 az, gn_f32 bz, gn_f32 cz, gn_f32 u, gn_f32 v, 
                            gn_f32 inverse, gn_f32* error) {
   const gn_f32 share = 1.0f / (u + v + w);
   const gn_f32 spread = gn_max(gn_max(az, bz), cz) - gn_min(gn_min(az, bz), cz);
-  *error = ((4.0f * bound * spread + 1e-37f) * gn_abs(share) + GN_SLAB_SLACK * z + 1e-37f) * gn_abs(inverse) + 1e-37f;
+  *error = ((4.0f * bound * spread + GN_MET_UNDERFLOW) * gn_abs(share) + GN_SLAB_SLACK * z + GN_MET_UNDERFLOW) *
+               gn_abs(inverse) +
+           GN_MET_UNDERFLOW;
   return (u * az + v * bz + w * cz) * share * inverse;
 }
 

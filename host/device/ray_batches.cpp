@@ -92,12 +92,22 @@ Passes make_passes(const cl::Context& context, const TracePlan& plan, std::size_
           context.create_buffer("paused_rays", sizeof(std::uint32_t))};
 }
 
+cl::Handle<cl_event> enqueue_passes(const cl::Context& context, const TracePlan& plan, const Launch& launch,
+                                    std::span<const cl_event> wait_for, const EnqueuePass& enqueue) {
+  if (plan.counters) throw Error(ErrorCode::kInvalidArgument, "a counting tracer cannot only enqueue");
+  // The driver keeps the buffers alive until the commands that use them are done.
+  const Passes passes = make_passes(context, plan, launch.count);
+  auto event = enqueue(launch, passes, 0, wait_for);
+  for (std::uint32_t pass = 1; pass < plan.most_passes; ++pass) event = enqueue(launch, passes, pass, {});
+  return event;
+}
+
 double run_passes(const cl::Context& context, const TracePlan& plan, const Launch& launch,
                   const Passes& passes, const EnqueuePass& enqueue) {
   double ms = 0.0;
   for (std::uint32_t pass = 0; pass < plan.most_passes; ++pass) {
     if (plan.step_limit != 0) context.fill(passes.paused, 0);
-    const auto event = enqueue(launch, passes, pass);
+    const auto event = enqueue(launch, passes, pass, {});
     cl::wait(event);
     ms += event_ms(event);
     if (plan.step_limit == 0) return ms;

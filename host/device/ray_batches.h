@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -53,8 +52,11 @@ struct Launch {
   std::uint32_t count;
 };
 
-// Enqueues pass number `pass` of a launch.
-using EnqueuePass = std::function<cl::Handle<cl_event>(const Launch&, const Passes&, std::uint32_t pass)>;
+// Enqueues all passes a launch could need and returns the last one's event. Throws Error{kInvalidArgument}
+// for a plan with counters: nobody would fetch them.
+[[nodiscard]] cl::Handle<cl_event> enqueue_passes(const cl::Context& context, const TracePlan& plan,
+                                                  const Launch& launch, std::span<const cl_event> wait_for,
+                                                  const EnqueuePass& enqueue);
 
 // Blocks until a launch's rays are traced; device milliseconds. Throws Error{kDevice} when the passes end
 // before the rays do.

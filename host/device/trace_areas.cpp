@@ -51,6 +51,13 @@ ForestTracer::ForestTracer(const cl::Context& context, const DeviceForest& fores
 ForestTracer::ForestTracer(ForestTracer&&) noexcept = default;
 ForestTracer::~ForestTracer() = default;
 
+EnqueuePass ForestTracer::enqueuer(const cl::Handle<cl_kernel>& kernel) const {
+  return [this, &kernel](const Launch& launch, const Passes& passes, std::uint32_t pass,
+                         std::span<const cl_event> wait_for) {
+    return enqueue(kernel, launch, passes, pass, wait_for);
+  };
+}
+
 cl::Handle<cl_event> ForestTracer::enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                            const Passes& passes, std::uint32_t pass,
                                            std::span<const cl_event> wait_for) const {
@@ -66,25 +73,16 @@ cl::Handle<cl_event> ForestTracer::enqueue(const cl::Handle<cl_kernel>& kernel, 
   return cl::enqueue(context_.queue(), kernel.get(), global, local, wait_for);
 }
 
-cl::Handle<cl_event> ForestTracer::enqueue_only(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
-                                                std::span<const cl_event> wait_for) const {
-  if (plan_->counters) throw Error(ErrorCode::kInvalidArgument, "a counting tracer cannot only enqueue");
-  // The driver keeps the buffers alive until the commands that use them are done.
-  const Passes passes = make_passes(context_, *plan_, launch.count);
-  auto event = enqueue(kernel, launch, passes, 0, wait_for);
-  for (std::uint32_t pass = 1; pass < plan_->most_passes; ++pass)
-    event = enqueue(kernel, launch, passes, pass, {});
-  return event;
-}
-
 cl::Handle<cl_event> ForestTracer::enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
                                                    std::span<const cl_event> wait_for) const {
-  return enqueue_only(closest_, {rays, hits, no_counters_.mem.get(), count}, wait_for);
+  return enqueue_passes(context_, *plan_, {rays, hits, no_counters_.mem.get(), count}, wait_for,
+                        enqueuer(closest_));
 }
 
 cl::Handle<cl_event> ForestTracer::enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
                                                std::span<const cl_event> wait_for) const {
-  return enqueue_only(any_, {rays, occluded, no_counters_.mem.get(), count}, wait_for);
+  return enqueue_passes(context_, *plan_, {rays, occluded, no_counters_.mem.get(), count}, wait_for,
+                        enqueuer(any_));
 }
 
 template <typename Answer>
@@ -93,11 +91,8 @@ ForestTraceResult ForestTracer::trace_all(const cl::Handle<cl_kernel>& kernel, s
                                           const Progress& progress) const {
   ForestTraceResult result;
   const std::uint64_t invalid_before = invalid_rays();
-  const EnqueuePass pass_of = [&](const Launch& launch, const Passes& passes, std::uint32_t pass) {
-    return enqueue(kernel, launch, passes, pass, {});
-  };
   result.kernel_ms =
-      trace_in_batches(context_, *plan_, rays, result.*answers, result.counters, pass_of, progress);
+      trace_in_batches(context_, *plan_, rays, result.*answers, result.counters, enqueuer(kernel), progress);
   result.invalid_rays = invalid_rays() - invalid_before;
   return result;
 }

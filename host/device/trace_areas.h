@@ -65,8 +65,7 @@ class ForestTracer {
   [[nodiscard]] cl::Handle<cl_event> enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                              const Passes& passes, std::uint32_t pass,
                                              std::span<const cl_event> wait_for) const;
-  [[nodiscard]] cl::Handle<cl_event> enqueue_only(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
-                                                  std::span<const cl_event> wait_for) const;
+  [[nodiscard]] EnqueuePass enqueuer(const cl::Handle<cl_kernel>& kernel) const;
   template <typename Answer>
   [[nodiscard]] ForestTraceResult trace_all(const cl::Handle<cl_kernel>& kernel, std::span<const Ray> rays,
                                             std::vector<Answer> ForestTraceResult::*answers,

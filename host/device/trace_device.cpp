@@ -86,6 +86,13 @@ void Tracer::set_up(const char* source) {
 Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;
 
+EnqueuePass Tracer::enqueuer(const cl::Handle<cl_kernel>& kernel) const {
+  return [this, &kernel](const Launch& launch, const Passes& passes, std::uint32_t pass,
+                         std::span<const cl_event> wait_for) {
+    return enqueue(kernel, launch, passes, pass, wait_for);
+  };
+}
+
 cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                      const Passes& passes, std::uint32_t pass,
                                      std::span<const cl_event> wait_for) const {
@@ -101,25 +108,16 @@ cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, const 
   return cl::enqueue(context_.queue(), kernel.get(), global, local, wait_for);
 }
 
-cl::Handle<cl_event> Tracer::enqueue_only(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
-                                          std::span<const cl_event> wait_for) const {
-  if (plan_->counters) throw Error(ErrorCode::kInvalidArgument, "a counting tracer cannot only enqueue");
-  // The driver keeps the buffers alive until the commands that use them are done.
-  const Passes passes = make_passes(context_, *plan_, launch.count);
-  auto event = enqueue(kernel, launch, passes, 0, wait_for);
-  for (std::uint32_t pass = 1; pass < plan_->most_passes; ++pass)
-    event = enqueue(kernel, launch, passes, pass, {});
-  return event;
-}
-
 cl::Handle<cl_event> Tracer::enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
                                              std::span<const cl_event> wait_for) const {
-  return enqueue_only(closest_, {rays, hits, no_counters_.mem.get(), count}, wait_for);
+  return enqueue_passes(context_, *plan_, {rays, hits, no_counters_.mem.get(), count}, wait_for,
+                        enqueuer(closest_));
 }
 
 cl::Handle<cl_event> Tracer::enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
                                          std::span<const cl_event> wait_for) const {
-  return enqueue_only(any_, {rays, occluded, no_counters_.mem.get(), count}, wait_for);
+  return enqueue_passes(context_, *plan_, {rays, occluded, no_counters_.mem.get(), count}, wait_for,
+                        enqueuer(any_));
 }
 
 template <typename Answer>
@@ -127,11 +125,8 @@ TraceResult Tracer::trace_all(const cl::Handle<cl_kernel>& kernel, std::span<con
                               std::vector<Answer> TraceResult::*answers, const Progress& progress) const {
   TraceResult result;
   const std::uint64_t invalid_before = invalid_rays();
-  const EnqueuePass pass_of = [&](const Launch& launch, const Passes& passes, std::uint32_t pass) {
-    return enqueue(kernel, launch, passes, pass, {});
-  };
   result.kernel_ms =
-      trace_in_batches(context_, *plan_, rays, result.*answers, result.counters, pass_of, progress);
+      trace_in_batches(context_, *plan_, rays, result.*answers, result.counters, enqueuer(kernel), progress);
   result.invalid_rays = invalid_rays() - invalid_before;
   return result;
 }

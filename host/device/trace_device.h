@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -48,6 +49,9 @@ struct TraceResult {
 
 struct Launch;  // ray_batches.h
 struct Passes;
+// Enqueues pass number `pass` of a launch, after the given events.
+using EnqueuePass = std::function<cl::Handle<cl_event>(const Launch&, const Passes&, std::uint32_t pass,
+                                                       std::span<const cl_event> wait_for)>;
 struct TracePlan;
 
 // Holds the kernels for one tree. The context and the tree must outlive it.
@@ -85,8 +89,7 @@ class Tracer {
   [[nodiscard]] cl::Handle<cl_event> enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                              const Passes& passes, std::uint32_t pass,
                                              std::span<const cl_event> wait_for) const;
-  [[nodiscard]] cl::Handle<cl_event> enqueue_only(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
-                                                  std::span<const cl_event> wait_for) const;
+  [[nodiscard]] EnqueuePass enqueuer(const cl::Handle<cl_kernel>& kernel) const;
   template <typename Answer>
   [[nodiscard]] TraceResult trace_all(const cl::Handle<cl_kernel>& kernel, std::span<const Ray> rays,
                                       std::vector<Answer> TraceResult::*answers,

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "gnomon/shared/hit_math.h"
+#include "gnomon/tree/reference_batch.h"
 
 namespace gnomon {
 namespace {
@@ -178,20 +179,7 @@ class Walk {
 }  // namespace
 
 ReferenceTrace trace_wide_reference(const WideBvh& wide, std::span<const Ray> rays, bool any_hit) {
-  ReferenceTrace out;
-  out.hits.reserve(rays.size());
-  out.counters.reserve(rays.size());
-  for (const Ray& ray : rays) {
-    Walk walk(wide, ray, any_hit);
-    if (gn_ray_is_valid(&ray) != 0) {
-      walk.run();
-    } else {
-      out.invalid_rays += 1;
-    }
-    out.hits.push_back(walk.best);
-    out.counters.push_back(walk.counters);
-  }
-  return out;
+  return trace_by(rays, [&](const Ray& ray) { return Walk(wide, ray, any_hit); });
 }
 
 }  // namespace gnomon

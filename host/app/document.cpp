@@ -81,6 +81,20 @@ std::string describe(const cl::DeviceInfo& device) {
   return device.name + " (" + device.platform_name + ")";
 }
 
+const char* kind_name(LightKind kind) {
+  switch (kind) {
+    case LightKind::kPoint:
+      return "point";
+    case LightKind::kSpot:
+      return "spot";
+    case LightKind::kDirectional:
+      return "directional";
+    case LightKind::kArea:
+      return "area";
+  }
+  return "?";
+}
+
 std::string describe(const Scene& scene) {
   std::string text = std::to_string(scene.triangles.size()) + " triangles, hash " + scene_hash(scene);
   if (scene.report.dropped() > 0) text += ", " + std::to_string(scene.report.dropped()) + " dropped";

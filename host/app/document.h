@@ -26,6 +26,8 @@ void add_build(Json& document, const TimedBuild& build);
 
 [[nodiscard]] std::string describe(const cl::DeviceInfo& device);
 [[nodiscard]] std::string describe(const Scene& scene);
+// "point", "spot", "directional", "area".
+[[nodiscard]] const char* kind_name(LightKind kind);
 [[nodiscard]] std::string describe(const TimedBuild& build);
 
 }  // namespace gnomon::app

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "document.h"
 #include "gnomon/areas/areas_from_scene.h"
 #include "gnomon/areas/measure.h"
 #include "numbers.h"
@@ -19,7 +20,7 @@ const char* const kHeuristicHelp =
     "  solid-angle  from a point, even in all directions that it shines in\n"
     "  near-plane   from a point, even over a picture's plane, as a camera's are\n"
     "  yaw-pitch    from a point, even in yaw and pitch\n"
-    "The rays are those of a light of the scene (--light 0 is the first; gnomon info counts them), or your "
+    "The rays are those of a light of the scene (--light 0 is the first; gnomon info numbers them), or your "
     "own:\n"
     "--direction alone: parallel; --point alone: all ways; both: a view, --fov wide and high.\n";
 
@@ -36,7 +37,6 @@ constexpr std::array<Heuristic, 5> kHeuristics{{{"plane", RayMeasure::kParallel,
                                                 {"near-plane", RayMeasure::kNearPlane, true},
                                                 {"yaw-pitch", RayMeasure::kYawPitch, true}}};
 constexpr std::array<AxisPolicy, 3> kPolicies{AxisPolicy::kAll, AxisPolicy::kSpfh, AxisPolicy::kLsph};
-constexpr std::array<const char*, 4> kLightNames{"point", "spot", "directional", "area"};
 // A view begins this share of its reach from the eye: it must begin somewhere.
 constexpr double kNearShare = 0x1p-10;
 
@@ -89,7 +89,7 @@ Vec3 to_float(const Vec3d& v) {
 std::string name_of(const HeuristicOptions& options, const Scene& scene) {
   if (options.light) {
     const Light& light = scene.lights.at(*options.light);
-    const std::string kind = kLightNames.at(static_cast<std::size_t>(light.kind));
+    const std::string kind = kind_name(light.kind);
     return "light " + std::to_string(*options.light) + " (" + kind +
            (light.name.empty() ? ")" : " \"" + light.name + "\")");
   }

@@ -1,4 +1,5 @@
 // gnomon info: what is in a scene, and what a build of it would ask of a device. Works without any device.
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -37,7 +38,6 @@ MemoryNeed memory_need(const cl::DeviceInfo& device, std::uint64_t triangles) {
 }
 
 using LightCounts = std::array<std::uint64_t, 4>;
-constexpr std::array<const char*, 4> kLightNames{"point", "spot", "directional", "area"};
 
 LightCounts count_lights(const Scene& scene) {
   LightCounts counts{};
@@ -57,14 +57,14 @@ std::string camera_names(const Scene& scene) {
   return std::to_string(scene.cameras.size()) + (names.empty() ? "" : names + ")");
 }
 
-std::string light_counts(const Scene& scene) {
-  const LightCounts counts = count_lights(scene);
-  std::string kinds;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] > 0)
-      kinds += (kinds.empty() ? " (" : ", ") + std::to_string(counts[i]) + " " + kLightNames[i];
-  }
-  return std::to_string(scene.lights.size()) + (kinds.empty() ? "" : kinds + ")");
+// With their numbers, as --light takes them; of many the first.
+std::string light_list(const Scene& scene) {
+  constexpr std::size_t kMostListed = 8;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(scene.lights.size(), kMostListed); ++i)
+    list += (list.empty() ? " (" : ", ") + std::to_string(i) + " " + kind_name(scene.lights[i].kind);
+  if (scene.lights.size() > kMostListed) list += ", ...";
+  return std::to_string(scene.lights.size()) + (list.empty() ? "" : list + ")");
 }
 
 std::string describe(const MemoryNeed& need, const cl::DeviceInfo& device) {
@@ -75,7 +75,7 @@ std::string describe(const MemoryNeed& need, const cl::DeviceInfo& device) {
 Json to_json(const Scene& scene) {
   Json lights = Json::object();
   const LightCounts counts = count_lights(scene);
-  for (std::size_t i = 0; i < counts.size(); ++i) lights[kLightNames[i]] = counts[i];
+  for (std::size_t i = 0; i < counts.size(); ++i) lights[kind_name(static_cast<LightKind>(i))] = counts[i];
   Json cameras = Json::array();
   for (const Camera& camera : scene.cameras) cameras.push_back(camera.name);
   const Bounds bounds = bounds_of(scene);
@@ -98,7 +98,7 @@ std::string facts_of(const Options& options, const Scene& scene) {
   }
   facts.add("materials", std::to_string(scene.materials.size()));
   facts.add("cameras", camera_names(scene));
-  facts.add("lights", light_counts(scene));
+  facts.add("lights", light_list(scene));
   return facts.text();
 }
 

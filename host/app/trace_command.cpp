@@ -25,9 +25,16 @@ struct Options {
   std::uint64_t count = 1'000'000;
   std::uint64_t seed = 1;
   std::string query;  // closest, any or empty: as the kind asks
+  std::string flavour = "auto";
   std::uint64_t repeat = 5;
   std::string rays_in, rays_out, hits_out;
 };
+
+TraceFlavour flavour_from(const std::string& name) {
+  for (const TraceFlavour flavour : {TraceFlavour::kThread, TraceFlavour::kWide})
+    if (name == to_string(flavour)) return flavour;
+  return TraceFlavour::kAuto;
+}
 
 // Whether to ask for any hit only. Files hold closest hits, so writing one asks for those.
 bool wants_any_hit(const Options& options) {
@@ -61,6 +68,8 @@ void add_trace(Json& document, const Options& options, const TimedTrace& trace, 
   chosen["seed"] = options.seed;
   chosen["query"] = any_hit ? "any" : "closest";
   chosen["repeat"] = options.repeat;
+  chosen["flavour"] = options.flavour;
+  document["flavour"] = to_string(trace.flavour);
   document["rays"] = rays;
   document["hits"] = trace.hit_count;
   document["invalid_rays"] = trace.invalid_rays;
@@ -92,6 +101,7 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
                          std::to_string(trace.mrays_per_s.count) + ", " + fixed(trace.mrays_per_s.min, 3) +
                          " to " + fixed(trace.mrays_per_s.max, 3) + "; " +
                          (trace.device_clock ? "device time)" : "wall clock, transfers included)"));
+  facts.add("flavour", to_string(trace.flavour));
   facts.add("work", fixed(trace.boxes_per_ray, 2) + " boxes and " + fixed(trace.triangles_per_ray, 2) +
                         " triangles a ray");
   return facts.text();
@@ -107,8 +117,8 @@ int run(const Options& options, Console& console) {
   const TimedBuild build = build_for_use(context, scene, tree, {1, true}, console.progress());
   const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
   stop_if_interrupted();
-  const TimedTrace trace =
-      trace_timed(context, build.tree, rays, any_hit, options.repeat, console.progress());
+  const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, flavour_from(options.flavour),
+                                       options.repeat, console.progress());
   stop_if_interrupted();
   if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
   if (!options.hits_out.empty()) write_hits(options.hits_out, trace.hits);
@@ -155,6 +165,14 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
                    "closest or any; default: any for shadow and parallel, else closest")
       ->check(CLI::IsMember({"closest", "any"}))
       ->type_name("Q");
+  command
+      ->add_option(
+          "--flavour", options->flavour,
+          "thread: the binary tree; wide: eight boxes at a time; auto: as suits the device. Hits are the "
+          "same, boxes a ray are not")
+      ->check(CLI::IsMember({"auto", "thread", "wide"}))
+      ->type_name("F")
+      ->capture_default_str();
   add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")
       ->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);

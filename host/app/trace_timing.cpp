@@ -34,9 +34,12 @@ void count_work(TimedTrace& timed, const TraceResult& counted) {
 }  // namespace
 
 TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::span<const Ray> rays,
-                       bool any_hit, std::uint64_t repeat, const Progress& progress) {
-  const Tracer tracer(context, tree);
+                       bool any_hit, TraceFlavour flavour, std::uint64_t repeat, const Progress& progress) {
+  TraceOptions options;
+  options.flavour = flavour;
+  const Tracer tracer(context, tree, options);
   TimedTrace timed;
+  timed.flavour = tracer.flavour();
   TraceResult last = trace_once(tracer, rays, any_hit, progress);
   std::vector<double> device_seconds;
   for (std::uint64_t i = 0; i < repeat; ++i) {
@@ -58,9 +61,8 @@ TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::s
   timed.invalid_rays = last.invalid_rays;
   timed.hits = std::move(last.hits);
 
-  TraceOptions counting;
-  counting.counters = true;
-  count_work(timed, trace_once(Tracer(context, tree, counting), rays, any_hit, progress));
+  options.counters = true;
+  count_work(timed, trace_once(Tracer(context, tree, options), rays, any_hit, progress));
   return timed;
 }
 

@@ -11,7 +11,8 @@
 namespace gnomon::app {
 
 struct TimedTrace {
-  std::vector<Hit> hits;  // closest hits; empty for any-hit queries
+  TraceFlavour flavour = TraceFlavour::kAuto;  // the one that traced
+  std::vector<Hit> hits;                       // closest hits; empty for any-hit queries
   std::uint64_t hit_count = 0;
   std::uint64_t invalid_rays = 0;
   bool device_clock = false;    // seconds are device event times; else wall clock, transfers included
@@ -24,7 +25,7 @@ struct TimedTrace {
 
 // One pass to warm up, `repeat` timed ones, one that counts. Throws as Tracer.
 [[nodiscard]] TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree,
-                                     std::span<const Ray> rays, bool any_hit, std::uint64_t repeat,
-                                     const Progress& progress);
+                                     std::span<const Ray> rays, bool any_hit, TraceFlavour flavour,
+                                     std::uint64_t repeat, const Progress& progress);
 
 }  // namespace gnomon::app

@@ -97,6 +97,24 @@ TEST_CASE("trace, as a document") {
   CHECK(document.at("triangles_per_ray").get<double>() > 0.0);
 }
 
+TEST_CASE("trace names the flavour that traced, and takes one") {
+  const auto traced = [](const std::string& flavour) {
+    return document_of({"trace", "gen:cottage:8k", "--count", "2k", "--flavour", flavour, "--json"});
+  };
+  const json thread = traced("thread");
+  const json wide = traced("wide");
+  CHECK(thread.at("flavour") == "thread");
+  CHECK(wide.at("flavour") == "wide");
+  CHECK(thread.at("hits") == wide.at("hits"));
+  CHECK(thread.at("boxes_per_ray") != wide.at("boxes_per_ray"));
+  const json left_to_us = traced("auto");
+  CHECK(left_to_us.at("options").at("flavour") == "auto");
+  CHECK((left_to_us.at("flavour") == "thread" || left_to_us.at("flavour") == "wide"));
+  const auto refused = run({"trace", "gen:cottage:8k", "--flavour", "narrow"});
+  CHECK(refused.status == 2);
+  CHECK_THAT(refused.err, Catch::Contains("--flavour") && Catch::Contains("wide"));
+}
+
 TEST_CASE("the text of the same commands goes to stdout too, and --quiet leaves stderr empty") {
   for (const std::vector<std::string>& arguments :
        std::vector<std::vector<std::string>>{{"devices", "--quiet"},

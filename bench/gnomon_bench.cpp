@@ -7,17 +7,14 @@
 //
 // Inside the measured time: ours, the launches (rays and hits stay in device buffers); Embree's, filling its
 // ray structures from the same array and writing answers back, as any caller with a batch must.
-#include <getopt.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <memory>
-#include <numeric>
-#include <optional>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "contest.h"
 #include "embree_peer.h"
@@ -56,113 +53,50 @@ struct Settings {
   gnomon::CollapseOptions collapse;
 };
 
-const char* const kHelp =
-    "gnomon_bench: build and trace beside Embree, one JSON row a measurement\n"
-    "  --scenes LIST     generators or files, by commas (atrium,city,terrain,random)\n"
-    "  --triangles N     of generated scenes (1000000)\n"
-    "  --rays LIST       primary bounce bounce-shuffled shadow sun-axis sun-oblique random; or none (all)\n"
-    "  --flavours LIST   wide portable thread (wide)\n"
-    "  --ray-count N     rays a batch (262144)\n"
-    "  --rounds N        that count (7)\n"
-    "  --seed N          of scenes and rays (1)\n"
-    "  --threads 1|all   (1)\n"
-    "  --no-build        leave out the build rows\n"
-    "  --leaf N --bins N --cost-traversal X --cost-triangle X --cost-node X --cost-block X   of our trees\n"
-    "  --subtree N       triangles that one work-group builds alone (0: as the device likes)\n";
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t at = 0; at <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    if (comma > at) parts.push_back(text.substr(at, comma - at));
-    at = comma + 1;
-  }
-  return parts;
-}
-
-std::optional<Settings> settings_from(int argc, char** argv) {
-  Settings s;
-  const option names[] = {
-      {"scenes", 1, nullptr, 's'},        {"triangles", 1, nullptr, 't'}, {"rays", 1, nullptr, 'r'},
-      {"flavours", 1, nullptr, 'f'},      {"ray-count", 1, nullptr, 'n'}, {"rounds", 1, nullptr, 'R'},
-      {"seed", 1, nullptr, 'S'},          {"threads", 1, nullptr, 'T'},   {"no-build", 0, nullptr, 'B'},
-      {"leaf", 1, nullptr, 'l'},          {"bins", 1, nullptr, 'b'},      {"cost-traversal", 1, nullptr, 'v'},
-      {"cost-triangle", 1, nullptr, 'i'}, {"cost-node", 1, nullptr, 'N'}, {"cost-block", 1, nullptr, 'K'},
-      {"subtree", 1, nullptr, 'u'},       {"help", 0, nullptr, 'h'},      {nullptr, 0, nullptr, 0}};
-  for (int c = 0; (c = getopt_long(argc, argv, "", names, nullptr)) != -1;) {
-    const auto number = [] { return std::strtoull(optarg, nullptr, 10); };
-    const auto real = [] { return std::strtof(optarg, nullptr); };
-    switch (c) {
-      case 's':
-        s.scenes = split(optarg);
-        break;
-      case 't':
-        s.triangles = number();
-        break;
-      case 'r':
-        s.rays = std::string(optarg) == "none" ? std::vector<std::string>{} : split(optarg);
-        break;
-      case 'f':
-        s.flavours = split(optarg);
-        break;
-      case 'n':
-        s.ray_count = number();
-        break;
-      case 'R':
-        s.rounds = static_cast<int>(number());
-        break;
-      case 'S':
-        s.seed = number();
-        break;
-      case 'T':
-        s.all_threads = std::string(optarg) == "all";
-        break;
-      case 'B':
-        s.build = false;
-        break;
-      case 'l':
-        s.options.max_leaf_size = static_cast<std::uint32_t>(number());
-        break;
-      case 'b':
-        s.options.bins = static_cast<std::uint32_t>(number());
-        break;
-      case 'v':
-        s.options.cost_traversal = real();
-        break;
-      case 'i':
-        s.options.cost_triangle = real();
-        break;
-      case 'N':
-        s.collapse.cost_node = real();
-        break;
-      case 'K':
-        s.collapse.cost_block = real();
-        break;
-      case 'u':
-        s.options.subtree_size = static_cast<std::uint32_t>(number());
-        break;
-      case 'h':
-        std::fputs(kHelp, stdout);
-        return std::nullopt;
-      default:
-        throw std::runtime_error("see gnomon_bench --help");
-    }
-  }
-  return s;
+void add_options(CLI::App& program, Settings& s) {
+  program.add_option("--scenes", s.scenes, "generators or scene files, by commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  program.add_option("--triangles", s.triangles, "of generated scenes")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 31U))
+      ->capture_default_str();
+  program.add_option("--rays", s.rays, "which kinds, by commas; none: builds only")
+      ->delimiter(',')
+      ->check(CLI::IsMember(
+          {"primary", "bounce", "bounce-shuffled", "shadow", "sun-axis", "sun-oblique", "random", "none"}))
+      ->capture_default_str();
+  program.add_option("--flavours", s.flavours, "of our tracer, by commas")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"wide", "portable", "thread"}))
+      ->capture_default_str();
+  program.add_option("--ray-count", s.ray_count, "rays a batch")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 31U))
+      ->capture_default_str();
+  program.add_option("--rounds", s.rounds, "that count, after one to warm up")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  program.add_option("--seed", s.seed, "of scenes and rays")->capture_default_str();
+  program.add_flag("--all-threads", s.all_threads,
+                   "all compute units and wall time, instead of one and CPU time");
+  program.add_flag("!--no-build", s.build, "leave out the build rows");
+  program.add_option("--bins", s.options.bins, "of our trees")->capture_default_str();
+  program.add_option("--max-leaf", s.options.max_leaf_size, "of our trees")->capture_default_str();
+  program.add_option("--cost-traversal", s.options.cost_traversal, "of our trees")->capture_default_str();
+  program.add_option("--cost-triangle", s.options.cost_triangle, "of our trees")->capture_default_str();
+  program
+      .add_option("--subtree-size", s.options.subtree_size,
+                  "triangles one work-group builds; 0: as the device likes")
+      ->capture_default_str();
+  program.add_option("--cost-node", s.collapse.cost_node, "of the collapse to wide trees")
+      ->capture_default_str();
+  program.add_option("--cost-block", s.collapse.cost_block, "of the collapse to wide trees")
+      ->capture_default_str();
 }
 
 gnomon::Scene scene_from(const std::string& name, const Settings& settings) {
   for (const auto& generator : gnomon::generators())
     if (generator.name == name) return gnomon::generate_scene(name, settings.triangles, settings.seed);
   return gnomon::import_scene(name);
-}
-
-// Shadow rays to a sun: from the hits of primary rays towards where the light comes from.
-std::vector<Ray> sun_rays(const gnomon::Scene& scene, const std::vector<Ray>& primary,
-                          const std::vector<Hit>& hits, const Settings& settings, const float to_sun[3]) {
-  auto rays = gnomon::bounce_rays(scene, primary, hits, settings.ray_count, settings.seed);
-  for (Ray& ray : rays) std::copy_n(to_sun, 3, ray.direction);
-  return rays;
 }
 
 class SceneBench {
@@ -180,8 +114,11 @@ class SceneBench {
                {"scene_hash", gnomon::scene_hash(scene_)},
                {"triangles", scene_.triangles.size()},
                {"seed", settings.seed},
-               {"leaf", settings.options.max_leaf_size},
+               {"bins", settings.options.bins},
+               {"max_leaf", settings.options.max_leaf_size},
                {"cost_traversal", settings.options.cost_traversal},
+               {"cost_triangle", settings.options.cost_triangle},
+               {"cost_node", settings.collapse.cost_node},
                {"cost_block", settings.collapse.cost_block}};
   }
 
@@ -194,7 +131,7 @@ class SceneBench {
       build_ours();
       fast.build();
     }
-    if (settings_.rays.empty()) return;
+    if (settings_.rays.front() == "none") return;
     robust.build();
     const gnomon::Tracer tracer(context_, wide_);
     primary_ = gnomon::primary_rays(scene_, settings_.ray_count, settings_.seed);
@@ -228,7 +165,7 @@ class SceneBench {
     extra["mean_block"] = stats.mean_block;
     extra["bytes_per_triangle"] =
         static_cast<double>(stats.bytes) / static_cast<double>(scene_.triangles.size());
-    put_rows("build", contest, 1, static_cast<double>(scene_.triangles.size()), extra);
+    put_rows("build", contest, {json::object()}, static_cast<double>(scene_.triangles.size()), extra);
   }
 
   std::vector<Ray> rays_of(const std::string& kind) {
@@ -236,15 +173,23 @@ class SceneBench {
     if (kind == "random") return gnomon::random_rays(scene_, settings_.ray_count, settings_.seed);
     if (kind == "shadow")
       return gnomon::shadow_rays(scene_, primary_, hits_, settings_.ray_count, settings_.seed);
-    const float axis[3] = {0.0F, 1.0F, 0.0F};
-    const float oblique[3] = {0.4F, 0.8F, 0.45F};
-    if (kind == "sun-axis") return sun_rays(scene_, primary_, hits_, settings_, axis);
-    if (kind == "sun-oblique") return sun_rays(scene_, primary_, hits_, settings_, oblique);
+    if (kind == "sun-axis") return sun_rays({0.0F, -1.0F, 0.0F});
+    if (kind == "sun-oblique") return sun_rays({-0.399F, -0.798F, -0.449F});
     auto rays = gnomon::bounce_rays(scene_, primary_, hits_, settings_.ray_count, settings_.seed);
     if (kind == "bounce") return rays;
-    if (kind != "bounce-shuffled") throw std::runtime_error("no rays are called " + kind + "; see --help");
     std::mt19937_64 random(settings_.seed);
     for (std::size_t i = rays.size(); i > 1; --i) std::swap(rays[i - 1], rays[random() % i]);
+    return rays;
+  }
+
+  // Shadow rays from the hits of primary rays, as if a sun were the scene's only light.
+  std::vector<Ray> sun_rays(const gnomon::Vec3& direction) {
+    gnomon::Light sun;
+    sun.kind = gnomon::LightKind::kDirectional;
+    sun.direction = direction;
+    auto lights = std::exchange(scene_.lights, {sun});
+    auto rays = gnomon::shadow_rays(scene_, primary_, hits_, settings_.ray_count, settings_.seed);
+    scene_.lights = std::move(lights);
     return rays;
   }
 
@@ -278,10 +223,10 @@ class SceneBench {
                          [&, peer] { any ? peer->any16(rays, occluded) : peer->closest16(rays, hits); }});
     }
     run_contest(contest, settings_.rounds);
-    json extra = {{"rays", kind}, {"ray_count", rays.size()}};
-    add_counts(extra, rays, any);
-    put_rows(any ? "any hit" : "closest hit", contest, settings_.flavours.size(),
-             static_cast<double>(rays.size()), extra);
+    const json extra = {{"rays", kind}, {"ray_count", rays.size()}};
+    std::vector<json> counts;
+    for (const std::string& flavour : settings_.flavours) counts.push_back(work_of(flavour, rays, any));
+    put_rows(any ? "any hit" : "closest hit", contest, counts, static_cast<double>(rays.size()), extra);
   }
 
   std::unique_ptr<gnomon::Tracer> make_tracer(const std::string& flavour, bool counters) {
@@ -294,8 +239,8 @@ class SceneBench {
   }
 
   // Means over all rays: exact claims, one pass.
-  void add_counts(json& row, const std::vector<Ray>& rays, bool any) {
-    const auto tracer = make_tracer(settings_.flavours.front(), true);
+  json work_of(const std::string& flavour, const std::vector<Ray>& rays, bool any) {
+    const auto tracer = make_tracer(flavour, true);
     const auto result = any ? tracer->any(rays) : tracer->closest(rays);
     double boxes = 0.0;
     double triangles = 0.0;
@@ -303,14 +248,15 @@ class SceneBench {
       boxes += c.boxes;
       triangles += c.triangles;
     }
-    row["boxes_per_ray"] = boxes / static_cast<double>(rays.size());
-    row["triangles_per_ray"] = triangles / static_cast<double>(rays.size());
+    const auto count = static_cast<double>(rays.size());
+    return {{"boxes_per_ray", boxes / count}, {"triangles_per_ray", triangles / count}};
   }
 
-  // A row for each of ours beside each peer.
-  void put_rows(const std::string& task, const std::vector<Contestant>& contest, std::size_t ours,
-                double items, const json& extra) {
+  // A row for each of ours, which come first and whose work is known, beside each peer.
+  void put_rows(const std::string& task, const std::vector<Contestant>& contest,
+                const std::vector<json>& work, double items, const json& extra) {
     const bool wall = threads_ > 1;
+    const std::size_t ours = work.size();
     for (std::size_t a = 0; a < ours; ++a) {
       for (std::size_t b = ours; b < contest.size(); ++b) {
         const auto seconds = [&](std::size_t i) {
@@ -330,6 +276,7 @@ class SceneBench {
         row["peer_cpu_time"] = gnomon::spread_of(contest[b].cpu_seconds).median * 1e9 / items;
         row["ratio"] = spread_json(speed_ratios(seconds(a), seconds(b)));
         row.update(extra);
+        row.update(work[a]);
         std::printf("%s\n", row.dump().c_str());
         std::fflush(stdout);
       }
@@ -358,11 +305,13 @@ gnomon::cl::Context context_for(const Settings& settings) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App program("gnomon_bench: build and trace beside Embree, one JSON row a measurement on stdout");
+  add_options(program, settings);
+  CLI11_PARSE(program, argc, argv);
   try {
-    const auto settings = settings_from(argc, argv);
-    if (!settings) return 0;
-    const gnomon::cl::Context context = context_for(*settings);
-    for (const std::string& name : settings->scenes) SceneBench(context, *settings, name).run();
+    const gnomon::cl::Context context = context_for(settings);
+    for (const std::string& name : settings.scenes) SceneBench(context, settings, name).run();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "gnomon_bench: %s\n", error.what());
     return 1;

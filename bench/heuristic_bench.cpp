@@ -3,7 +3,8 @@
 // process CPU time on one thread; one JSON row a measure on stdout. A ratio above 1 says that the measure is
 // slower.
 //
-//   heuristic_bench [--only MEASURE] [SCENE TRIANGLES]...   default: all measures, city 1000000 atrium 1000000
+//   heuristic_bench [--only MEASURE] [SCENE TRIANGLES]...   default: all measures, city 1000000 atrium
+//   1000000
 #include <cmath>
 #include <cstdio>
 #include <string>

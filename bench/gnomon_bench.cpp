@@ -43,7 +43,7 @@ struct Settings {
   std::uint64_t triangles = 1'000'000;
   std::vector<std::string> rays{"primary",  "bounce",      "bounce-shuffled", "shadow",
                                 "sun-axis", "sun-oblique", "random"};
-  std::vector<std::string> flavours{"wide"};
+  std::vector<std::string> flavours{"packet", "wide"};
   std::uint64_t ray_count = 262'144;
   std::uint64_t seed = 1;
   int rounds = 7;
@@ -67,7 +67,7 @@ void add_options(CLI::App& program, Settings& s) {
       ->capture_default_str();
   program.add_option("--flavours", s.flavours, "of our tracer, by commas")
       ->delimiter(',')
-      ->check(CLI::IsMember({"wide", "portable", "thread"}))
+      ->check(CLI::IsMember({"packet", "wide", "portable", "portable-packet", "thread"}))
       ->capture_default_str();
   program.add_option("--ray-count", s.ray_count, "rays a batch")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 31U))
@@ -232,7 +232,8 @@ class SceneBench {
   std::unique_ptr<gnomon::Tracer> make_tracer(const std::string& flavour, bool counters) {
     gnomon::TraceOptions options;
     options.counters = counters;
-    options.portable = flavour == "portable";
+    options.portable = flavour.starts_with("portable");
+    options.flavour = flavour.ends_with("packet") ? gnomon::TraceFlavour::kPacket : gnomon::TraceFlavour::kWide;
     if (flavour != "thread") return std::make_unique<gnomon::Tracer>(context_, wide_, options);
     options.flavour = gnomon::TraceFlavour::kThread;
     return std::make_unique<gnomon::Tracer>(context_, tree_, options);

@@ -127,6 +127,33 @@ static inline uint put_by_distance(float8 entries, uint mask, __global const uin
 #endif
 }
 
+// The same for packets: all of `count` lanes' keys, farthest first, and base plus the lane for each.
+static inline void put_places(float8 entries, uint mask, uint count, uint base, uint* keys_out, uint* places_out) {
+#if GN_EIGHT_AVX512
+  int8 keys = as_int8(__builtin_ia32_compresssi256_mask(entry_keys(entries), (int8)INT_MAX, (uchar)mask));
+  if (count > 1u) keys = count <= 4u ? sort_first_four(keys) : sort_eight(keys);
+  keys = as_int8(__builtin_ia32_permvarsi256(keys, (int8)((int)count - 1) - GN_LANES8));
+  vstore8(as_uint8(keys), 0, keys_out);
+  vstore8(as_uint8(keys & 7) + base, 0, places_out);
+#else
+  const int8 chosen = ((int8)((int)mask) & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
+  uint sorted[8], i;
+  vstore8(as_uint8(sort_eight(chosen ? entry_keys(entries) : (int8)INT_MAX)), 0, sorted);
+  for (i = 0u; i < count; ++i) {
+    keys_out[count - 1u - i] = sorted[i];
+    places_out[count - 1u - i] = base + (sorted[i] & 7u);
+  }
+#endif
+}
+
+// Writes base plus the lane for the lanes in mask, lowest lane first. Room for eight.
+static inline void put_lanes(uint mask, uint base, uint* places_out) {
+  while (mask != 0u) {
+    *places_out++ = base + lowest_bit(mask);
+    mask &= mask - 1u;
+  }
+}
+
 // Writes the links of the lanes in mask, lowest lane first, to links_out, which must have room for eight.
 static inline void put_in_order(uint mask, __global const uint* links, uint* links_out) {
 #if GN_EIGHT_AVX512

@@ -31,7 +31,7 @@ struct Options {
 };
 
 TraceFlavour flavour_from(const std::string& name) {
-  for (const TraceFlavour flavour : {TraceFlavour::kThread, TraceFlavour::kWide})
+  for (const TraceFlavour flavour : {TraceFlavour::kThread, TraceFlavour::kWide, TraceFlavour::kPacket})
     if (name == to_string(flavour)) return flavour;
   return TraceFlavour::kAuto;
 }
@@ -168,9 +168,10 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
   command
       ->add_option(
           "--flavour", options->flavour,
-          "thread: the binary tree; wide: eight boxes at a time; auto: as suits the device. Hits are the "
+          "thread: the binary tree; wide: eight boxes at a time; packet: wide, and rays that run together "
+          "as one; auto: as suits the device. Hits are the "
           "same, boxes a ray are not")
-      ->check(CLI::IsMember({"auto", "thread", "wide"}))
+      ->check(CLI::IsMember({"auto", "thread", "wide", "packet"}))
       ->type_name("F")
       ->capture_default_str();
   add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")

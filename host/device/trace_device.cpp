@@ -10,7 +10,7 @@ namespace {
 
 TraceFlavour flavour_for(const cl::DeviceInfo& device, const TraceOptions& options) {
   if (options.flavour != TraceFlavour::kAuto) return options.flavour;
-  return device.is_cpu && device.loop_limit == 0 && options.step_limit == 0 ? TraceFlavour::kWide
+  return device.is_cpu && device.loop_limit == 0 && options.step_limit == 0 ? TraceFlavour::kPacket
                                                                             : TraceFlavour::kThread;
 }
 
@@ -24,22 +24,25 @@ const char* to_string(TraceFlavour flavour) {
       return "thread";
     case TraceFlavour::kWide:
       return "wide";
+    case TraceFlavour::kPacket:
+      return "packet";
   }
   return "?";
 }
 
 Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options)
     : context_(context), flavour_(flavour_for(context.device(), options)) {
-  if (flavour_ == TraceFlavour::kWide && !collapse(tree, options)) flavour_ = TraceFlavour::kThread;
-  if (flavour_ == TraceFlavour::kWide) {
-    trace_wide(collapsed_, options);
-  } else {
+  if (flavour_ != TraceFlavour::kThread && !collapse(tree, options)) flavour_ = TraceFlavour::kThread;
+  if (flavour_ == TraceFlavour::kThread) {
     trace_binary(tree, options);
+  } else {
+    trace_wide(collapsed_, options);
   }
 }
 
 Tracer::Tracer(const cl::Context& context, const DeviceWideBvh& tree, const TraceOptions& options)
-    : context_(context), flavour_(TraceFlavour::kWide) {
+    : context_(context),
+      flavour_(options.flavour == TraceFlavour::kAuto ? TraceFlavour::kPacket : options.flavour) {
   if (options.flavour == TraceFlavour::kThread) {
     throw Error(
         ErrorCode::kInvalidArgument,
@@ -54,7 +57,7 @@ bool Tracer::collapse(const DeviceBvh& tree, const TraceOptions& options) {
     collapsed_ = collapse_device(context_, tree);
     return true;
   } catch (const Error& error) {
-    if (options.flavour == TraceFlavour::kWide || error.code() != ErrorCode::kInvalidArgument) throw;
+    if (options.flavour != TraceFlavour::kAuto || error.code() != ErrorCode::kInvalidArgument) throw;
     return false;
   }
 }
@@ -72,7 +75,7 @@ void Tracer::trace_wide(const DeviceWideBvh& tree, const TraceOptions& options) 
   plan_ = std::make_unique<TracePlan>(plan_wide_trace(context_.device(), options, tree.depth));
   nodes_ = tree.nodes.mem.get();
   triangles_ = tree.blocks.mem.get();
-  set_up("trace_wide.cl");
+  set_up(flavour_ == TraceFlavour::kPacket ? "trace_packet.cl" : "trace_wide.cl");
 }
 
 void Tracer::set_up(const char* source) {

@@ -21,16 +21,19 @@ using Hit = GnHit;
 
 // How rays are traced; the answers are the same bits.
 enum class TraceFlavour : std::uint32_t {
-  kAuto,    // wide on CPUs that let loops run, thread elsewhere
+  kAuto,    // packet on CPUs that let loops run, thread elsewhere
   kThread,  // the binary tree, one box at a time: one ray per work-item is the parallelism
   kWide,    // the wide tree, eight boxes at a time: explicit vectors are
+  kPacket,  // the same; where 64 or 16 consecutive rays run together (through a point, or parallel), as one
 };
 [[nodiscard]] const char* to_string(TraceFlavour flavour);
 
 struct TraceOptions {
   TraceFlavour flavour = TraceFlavour::kAuto;
-  bool portable = false;               // wide: OpenCL C alone, without the device compiler's own instructions
-  bool counters = false;               // also count boxes and triangles per ray; slower
+  bool portable = false;  // wide and packet: OpenCL C alone, without the device compiler's own instructions
+  // Also count boxes and triangles per ray; slower. Rays of a packet count what their sixteen were tested
+  // against, the first also what was tested for all at once.
+  bool counters = false;
   std::uint32_t work_group_size = 64;  // power of two up to the device's limit
   // A ray's nodes and triangles per launch; rays that need more go on in another launch. 0: all in one,
   // unless the device ends long loops (DeviceInfo::loop_limit). For devices that stop kernels which run for
@@ -57,10 +60,10 @@ struct TracePlan;
 // Holds the kernels for one tree. The context and the tree must outlive it.
 class Tracer {
  public:
-  // The wide flavour collapses the tree first and keeps the result; leaves too large for it leave kAuto with
+  // Wide and packet collapse the tree first and keeps the result; leaves too large for it leave kAuto with
   // the thread flavour. Throws Error: kDevice, kOutOfMemory, kInvalidArgument.
   Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options = {});
-  // Traces a wide tree, which must be the flavour asked for. Throws the same.
+  // Traces a wide tree; the flavour asked for must not be thread. Throws the same.
   Tracer(const cl::Context& context, const DeviceWideBvh& tree, const TraceOptions& options = {});
   Tracer(Tracer&&) noexcept;
   ~Tracer();

@@ -84,13 +84,14 @@ typedef struct GnEdges {
 
 // Bounds of what rounding and underflow do to edge functions and distances, explained where they are used.
 #define GN_EDGE_SHIFT 9.5367432e-07f   // 2^-20
-#define GN_EDGE_ERROR 2.3841858e-06f   // 40 * 2^-24
+#define GN_EDGE_ERROR_8 2.9802322e-07f  // 5 * 2^-24
 #define GN_EDGE_UNDERFLOW 1e-36f
 #define GN_MET_UNDERFLOW 1e-37f
 
 // With z the largest distance along the ray's main axis, p the largest sheared coordinate and e = 2^-24, a sheared
 // coordinate is off by at most e(2p + 8z), an edge function by 12 e p^2 + 32 e p z + 128 e^2 z^2. Replacing p by
-// q = p + 2^-20 z makes 40 e q (q + z) an upper bound; 1e-36 covers underflow.
+// q = p + 2^-20 z makes 40 e q (q + z) an upper bound; 1e-36 covers underflow. Taken as 5 e (8 q (q + z)) it is infinite
+// where edge functions or their sum overflow: nothing is certain then.
 GN_INLINE GnEdges gn_triangle_edges(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2) {
   const gn_u32 kx = ray->kx, ky = ray->ky, kz = ray->kz;
   const gn_f32 az = v0[kz] - ray->origin[kz];
@@ -114,7 +115,7 @@ GN_INLINE GnEdges gn_triangle_edges(const GnRayFrame* ray, const gn_f32* v0, con
   edges.v = ax * cy - ay * cx;
   edges.w = bx * ay - by * ax;
   edges.z = z;
-  edges.bound = GN_EDGE_ERROR * q * (q + z) + GN_EDGE_UNDERFLOW;
+  edges.bound = GN_EDGE_ERROR_8 * (8.0f * q * (q + z)) + GN_EDGE_UNDERFLOW;
   return edges;
 }
 
@@ -144,7 +145,7 @@ GN_INLINE gn_f32 gn_met_at(gn_f32 az, gn_f32 bz, gn_f32 cz, gn_f32 u, gn_f32 v, 
   *error = ((4.0f * bound * spread + GN_MET_UNDERFLOW) * gn_abs(share) + GN_SLAB_SLACK * z + GN_MET_UNDERFLOW) *
                gn_abs(inverse) +
            GN_MET_UNDERFLOW;
-  return (u * az + v * bz + w * cz) * share * inverse;
+  return (u * share * az + v * share * bz + w * share * cz) * inverse;
 }
 
 // det(d, a, b) and its permanent, the same sum of magnitudes.

@@ -2,161 +2,19 @@
 // tree's bits, the reference's visits and the oracle.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 
 #include "gnomon/base/error.h"
-#include "gnomon/device/trace_device.h"
-#include "gnomon/tree/build_reference.h"
-#include "gnomon/tree/oracle.h"
-#include "gnomon/tree/trace_wide_reference.h"
-#include "support/device.h"
-#include "support/wide_shapes.h"
+#include "support/flavours.h"
 
 using gnomon::TraceFlavour;
+using gnomon::test::aimed_rays;
+using gnomon::test::awkward_rays;
 using gnomon::test::context;
 using gnomon::test::ray;
-using Triangles = std::vector<GnTriangle>;
-using Rays = std::vector<GnRay>;
-
-namespace {
-
-struct Traced {
-  gnomon::TraceResult closest;
-  gnomon::TraceResult any;
-};
-
-Traced trace(const gnomon::DeviceBvh& tree, const Rays& rays, TraceFlavour flavour, bool portable = false,
-             bool counters = false) {
-  gnomon::TraceOptions options;
-  options.flavour = flavour;
-  options.portable = portable;
-  options.counters = counters;
-  const gnomon::Tracer tracer(context(), tree, options);
-  REQUIRE(tracer.flavour() == flavour);
-  return {tracer.closest(rays), tracer.any(rays)};
-}
-
-void require_same_answers(const Traced& a, const Traced& b) {
-  REQUIRE(a.closest.invalid_rays == b.closest.invalid_rays);
-  REQUIRE(a.any.invalid_rays == b.any.invalid_rays);
-  for (std::size_t i = 0; i < a.closest.hits.size(); ++i) {
-    CAPTURE(i, a.closest.hits[i].t, b.closest.hits[i].t, a.closest.hits[i].primitive,
-            b.closest.hits[i].primitive);
-    REQUIRE(std::memcmp(&a.closest.hits[i], &b.closest.hits[i], sizeof(GnHit)) == 0);
-    REQUIRE(a.any.occluded[i] == b.any.occluded[i]);
-    REQUIRE((a.any.occluded[i] == 1) == (a.closest.hits[i].primitive != GN_NONE));
-  }
-}
-
-// Visits and hits of the device are the reference's. Divisions may be rounded otherwise on a GPU.
-void require_reference_work(const gnomon::DeviceBvh& tree, const Triangles& triangles, const Rays& rays,
-                            const Traced& traced) {
-  if (!context().device().is_cpu || !context().device().fp64) return;
-  const auto wide = gnomon::collapse_reference(download_bvh(context(), tree), triangles);
-  const auto closest = gnomon::trace_wide_reference(wide, rays, false);
-  const auto any = gnomon::trace_wide_reference(wide, rays, true);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    CAPTURE(i);
-    REQUIRE(std::memcmp(&traced.closest.hits[i], &closest.hits[i], sizeof(GnHit)) == 0);
-    REQUIRE(traced.closest.counters[i].boxes == closest.counters[i].boxes);
-    REQUIRE(traced.closest.counters[i].triangles == closest.counters[i].triangles);
-    REQUIRE((traced.any.occluded[i] == 1) == (any.hits[i].primitive != GN_NONE));
-    REQUIRE(traced.any.counters[i].boxes == any.counters[i].boxes);
-    REQUIRE(traced.any.counters[i].triangles == any.counters[i].triangles);
-  }
-}
-
-// Returns the hits of the flavours, which are equal.
-std::vector<GnHit> require_equal_flavours(const Triangles& triangles, const Rays& rays,
-                                          const gnomon::BuildOptions& options = {}) {
-  const auto tree = gnomon::build_device(context(), triangles, options);
-  const Traced thread = trace(tree, rays, TraceFlavour::kThread);
-  const Traced wide = trace(tree, rays, TraceFlavour::kWide);
-  require_same_answers(thread, wide);
-  require_same_answers(thread, trace(tree, rays, TraceFlavour::kWide, true));
-  for (const bool portable : {false, true}) {
-    const Traced counted = trace(tree, rays, TraceFlavour::kWide, portable, true);
-    require_same_answers(thread, counted);
-    require_reference_work(tree, triangles, rays, counted);
-  }
-  return wide.closest.hits;
-}
-
-void require_faultless(const Triangles& triangles, const Rays& rays, bool aimed) {
-  const auto tree = gnomon::build_device(context(), triangles);
-  const Traced traced = trace(tree, rays, TraceFlavour::kWide);
-  gnomon::OracleOptions options;
-  options.max_rays = rays.size();
-  const auto report = gnomon::judge(triangles, rays, traced.closest.hits, traced.any.occluded, options);
-  REQUIRE(report.rays_judged == rays.size());
-  REQUIRE(report.lost == 0);
-  REQUIRE(report.any_closest_disagree == 0);
-  if (context().device().fp64 || !aimed) {
-    REQUIRE(report.mismatches() == 0);
-    REQUIRE(report.max_t_error_ulp <= 1.0);
-  }
-}
-
-Rays aimed_rays(const Triangles& triangles, std::uint32_t count, std::uint32_t seed, float offset = 0.0F) {
-  gnomon::test::Random random(seed);
-  Rays rays;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const auto& t = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
-    const float* a = gnomon::test::corner(t, random.below(3));
-    const float* b = gnomon::test::corner(t, random.below(3));
-    const float target[3] = {0.5F * (a[0] + b[0]), 0.5F * (a[1] + b[1]), 0.5F * (a[2] + b[2])};
-    rays.push_back(gnomon::test::aimed(
-        {offset + random.between(-5, 15), offset + random.between(-5, 15), offset + random.between(-5, 15)},
-        target));
-  }
-  return rays;
-}
-
-// Random rays whose ranges, directions and origins are awkward in turn.
-Rays awkward_rays(std::uint32_t count, std::uint32_t seed) {
-  gnomon::test::Random random(seed);
-  Rays rays = gnomon::test::random_rays(count, seed + 1);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    GnRay& r = rays[i];
-    const std::uint32_t axis = random.below(3);
-    switch (i % 10) {
-      case 0:
-        r.direction[axis] = random.below(2) == 0 ? 0.0F : -0.0F;
-        break;
-      case 1:
-        r.direction[axis] = r.direction[(axis + 1) % 3] = random.below(2) == 0 ? 0.0F : -0.0F;
-        break;
-      case 2:
-        r.tmin = random.between(-15.0F, 0.0F);
-        break;
-      case 3:
-        r.tmin = -INFINITY;
-        break;
-      case 4:
-        r.tmin = random.between(0.0F, 10.0F);
-        r.tmax = r.tmin + random.between(0.0F, 5.0F);
-        break;
-      case 5:
-        r.tmin = random.between(-20.0F, -10.0F);
-        r.tmax = random.between(-10.0F, 0.0F);
-        break;
-      case 6:
-        r.direction[axis] *= 1e-40F;
-        break;
-      case 7:
-        for (float& x : r.direction) x *= random.below(2) == 0 ? 1e-30F : 1e30F;
-        break;
-      case 8:
-        r.direction[axis] = random.below(2) == 0 ? INFINITY : std::nanf("");
-        break;
-      default:
-        r.tmax = random.between(-1.0F, 6.0F);
-    }
-  }
-  return rays;
-}
-
-}  // namespace
+using gnomon::test::Rays;
+using gnomon::test::require_equal_flavours;
+using gnomon::test::require_faultless;
+using gnomon::test::Triangles;
 
 TEST_CASE("the device's collapse has the reference's bytes, whatever the shape and the tasks",
           "[portable][unlimited]") {
@@ -374,7 +232,7 @@ TEST_CASE("a wide tree is not traced by the thread flavour, nor in passes", "[po
   options.flavour = TraceFlavour::kThread;
   REQUIRE_THROWS_AS(gnomon::Tracer(context(), wide, options), gnomon::Error);
   options.flavour = TraceFlavour::kAuto;
-  REQUIRE(gnomon::Tracer(context(), wide, options).flavour() == TraceFlavour::kWide);
+  REQUIRE(gnomon::Tracer(context(), wide, options).flavour() == TraceFlavour::kPacket);
 }
 
 TEST_CASE("a device that ends loops is not asked for large wide trees", "[portable]") {

@@ -1,0 +1,115 @@
+// The last step of a packet's closest hits: the exact t, u and v of what floats found. Where the device has double,
+// eight at once: rays hand in theirs, and every eighth works them out, with the operations of gn_triangle_resolve in
+// its order, so bit for bit as one by one. Feeds trace_packet.cl.
+#ifndef GNOMON_SETTLE_H
+#define GNOMON_SETTLE_H
+
+#include "wide_leaf.h"
+
+// Hits found but not worked out: which ray met which triangle (a block's place times eight, plus the lane).
+typedef struct GnFound {
+  uint ray[8];
+  uint place[8];
+  uint count;
+} GnFound;
+
+#if GN_HAS_FP64
+
+// Of three vectors that of axis k, lane by lane.
+static inline double8 of_axis(long8 is_y, long8 is_z, double8 x, double8 y, double8 z) {
+  return is_z ? z : is_y ? y : x;
+}
+
+// det(d, a, b) as gn_wide_determinant sums it.
+static inline double8 determinant_of_eight(const double8* d, const double8* a, const double8* b) {
+  double8 sum = (double8)(0.0);
+  sum = sum + (a[1] * b[2] - a[2] * b[1]) * d[0];
+  sum = sum + (a[2] * b[0] - a[0] * b[2]) * d[1];
+  return sum + (a[0] * b[1] - a[1] * b[0]) * d[2];
+}
+
+// Works out the hits in `found` and writes them.
+static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangleBlock* blocks,
+                                                   __global const float8* rays, __global float4* hits) {
+  float corner[72], line[48];
+  double8 r[9], d[3];
+  uint i, k;
+  for (i = 0u; i < 8u; ++i) {
+    const uint from = i < found->count ? i : 0u;
+    __global const GnTriangleBlock* block = blocks + (found->place[from] >> 3);
+    __global const float* ray = (__global const float*)(rays + found->ray[from]);
+    const uint lane = found->place[from] & 7u;
+    for (k = 0u; k < 9u; ++k) corner[8u * k + i] = block->corners[k][lane];
+    for (k = 0u; k < 3u; ++k) {
+      line[8u * k + i] = ray[k];
+      line[24u + 8u * k + i] = ray[4u + k];
+    }
+  }
+  for (k = 0u; k < 3u; ++k) {
+    const double8 origin = convert_double8(vload8(k, line));
+    d[k] = convert_double8(vload8(3u + k, line));
+    r[k] = convert_double8(vload8(k, corner)) - origin;
+    r[3u + k] = convert_double8(vload8(3u + k, corner)) - origin;
+    r[6u + k] = convert_double8(vload8(6u + k, corner)) - origin;
+  }
+  {
+    const double8 ax = fabs(d[0]), ay = fabs(d[1]), az = fabs(d[2]);
+    const long8 y_over_x = ay > ax;
+    const long8 is_z = az > (y_over_x ? ay : ax);
+    double8 w0 = determinant_of_eight(d, r + 3, r + 6);
+    double8 w1 = determinant_of_eight(d, r + 6, r);
+    double8 w2 = determinant_of_eight(d, r, r + 3);
+    double8 sum = w0 + w1 + w2;
+    double8 distance = (double8)(0.0);
+    long8 flat;
+    // Rounding may leave a weight with the wrong sign where the ray meets an edge: it is zero there.
+    const long8 front = sum > 0.0, back = sum < 0.0;
+    w0 = (front && w0 < 0.0) || (back && w0 > 0.0) ? (double8)(0.0) : w0;
+    w1 = (front && w1 < 0.0) || (back && w1 > 0.0) ? (double8)(0.0) : w1;
+    w2 = (front && w2 < 0.0) || (back && w2 > 0.0) ? (double8)(0.0) : w2;
+    sum = w0 + w1 + w2;
+    flat = !(sum > 0.0 || sum < 0.0);
+    w0 = flat ? (double8)(1.0) : w0;
+    w1 = flat ? (double8)(1.0) : w1;
+    w2 = flat ? (double8)(1.0) : w2;
+    sum = flat ? (double8)(3.0) : sum;
+    distance = distance + w0 * of_axis(y_over_x, is_z, r[0], r[1], r[2]);
+    distance = distance + w1 * of_axis(y_over_x, is_z, r[3], r[4], r[5]);
+    distance = distance + w2 * of_axis(y_over_x, is_z, r[6], r[7], r[8]);
+    vstore8(convert_float8(distance / (sum * of_axis(y_over_x, is_z, d[0], d[1], d[2]))), 0, corner);
+    vstore8(convert_float8(w1 / sum), 1, corner);
+    vstore8(convert_float8(w2 / sum), 2, corner);
+  }
+  for (i = 0u; i < found->count; ++i) {
+    const uint primitive = blocks[found->place[i] >> 3].primitives[found->place[i] & 7u];
+    hits[found->ray[i]] = (float4)(corner[i], corner[8u + i], corner[16u + i], as_float(primitive));
+  }
+  found->count = 0u;
+}
+
+#else
+
+static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangleBlock* blocks,
+                                                   __global const float8* rays, __global float4* hits) {
+  uint i;
+  for (i = 0u; i < found->count; ++i) {
+    const GnRay ray = load_ray(rays, found->ray[i]);
+    const GnRayFrame frame = gn_ray_frame(&ray);
+    GnHit hit;
+    resolve(&frame, blocks + (found->place[i] >> 3), found->place[i] & 7u, 1, &hit);
+    hits[found->ray[i]] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
+  }
+  found->count = 0u;
+}
+
+#endif
+
+static inline void hand_in(GnFound* found, uint ray, uint place, __global const GnTriangleBlock* blocks,
+                           __global const float8* rays, __global float4* hits) {
+  found->ray[found->count] = ray;
+  found->place[found->count] = place;
+  found->count += 1u;
+  if (found->count == 8u) settle_found(found, blocks, rays, hits);
+}
+
+#endif

@@ -1,0 +1,100 @@
+// Batched ray tracing over the wide tree: in packets of 64 or 16 where consecutive rays run together, one by one
+// where they do not. Hits are those of the other flavours, bit for bit. A work-item has a work-group of its own, as in
+// trace_wide.cl.
+// Options: those of wide_walk.h, GN_RAYS_PER_ITEM.
+#include "packet_walk.h"
+#include "settle.h"
+
+#ifndef GN_RAYS_PER_ITEM
+#define GN_RAYS_PER_ITEM 64
+#endif
+
+static inline void write_packet(GnPacket* p, GnFound* found, __global const GnTriangleBlock* blocks,
+                                __global const float8* rays, __global float4* hits) {
+  uint i;
+  for (i = 0u; i < 16u * p->groups; ++i) {
+    const uint g = i >> 4, bit = 1u << (i & 15u), index = p->first + i;
+    if (p->pending[g] & bit) {
+      hand_in(found, index, ((const uint*)p->place)[i], blocks, rays, hits);
+    } else if (p->found[g] & bit) {
+      hits[index] = (float4)(p->best[i].t, p->best[i].u, p->best[i].v, as_float(p->best[i].primitive));
+    } else {
+      hits[index] = (float4)(INFINITY, 0.0f, 0.0f, as_float(GN_NONE));
+    }
+  }
+}
+
+static inline void reset_counters(GnPacket* p) {
+#if GN_COUNTERS
+  uint g;
+  for (g = 0u; g <= GN_GROUPS; ++g) p->boxes[g] = 0u;
+  for (g = 0u; g < GN_GROUPS; ++g) p->triangles[g] = 0u;
+#endif
+}
+
+// Work done for all rays at once counts as the first's.
+static inline void store_packet_counters(const GnPacket* p, __global GnRayCounters* counters) {
+#if GN_COUNTERS
+  uint i;
+  for (i = 0u; i < 16u * p->groups; ++i) {
+    counters[p->first + i].boxes = p->boxes[i >> 4] + (i == 0u ? p->boxes[GN_GROUPS] : 0u);
+    counters[p->first + i].triangles = p->triangles[i >> 4];
+  }
+#endif
+}
+
+// How many groups of sixteen from ray `index` on make a packet; 0: none.
+static inline uint packet_from(GnPacket* p, __global const float8* rays, uint index, uint left, float size) {
+  reset_counters(p);
+  if (left >= GN_PACKET && start_packet(p, rays, index, GN_GROUPS, size)) return GN_GROUPS;
+  if (left >= 16u && start_packet(p, rays, index, 1u, size)) return 1u;
+  return 0u;
+}
+
+// Closest hit of rays [0, count). invalid_rays counts rays that are not traceable; they miss.
+__kernel void trace_closest(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
+                            __global const float8* rays, __global float4* hits, volatile __global uint* invalid_rays,
+                            __global GnRayCounters* counters, uint count) {
+  uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
+  const uint end = min(count, index + GN_RAYS_PER_ITEM);
+  const float size = size_of_root(nodes);
+  GnPacket packet;
+  GnFound found;
+  found.count = 0u;
+  while (index < end) {
+    const uint groups = packet_from(&packet, rays, index, end - index, size);
+    if (groups > 0u) {
+      walk_packet(&packet, nodes, blocks, rays, 0);
+      write_packet(&packet, &found, blocks, rays, hits);
+      store_packet_counters(&packet, counters);
+      index += 16u * groups;
+    } else {
+      const uint stop = min(end, index + 16u);
+      for (; index < stop; ++index) trace_one_closest(nodes, blocks, rays, hits, invalid_rays, counters, index);
+    }
+  }
+  if (found.count > 0u) settle_found(&found, blocks, rays, hits);
+}
+
+// Any hit of rays [0, count): occluded receives 1 or 0.
+__kernel void trace_any(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
+                        __global const float8* rays, __global uint* occluded, volatile __global uint* invalid_rays,
+                        __global GnRayCounters* counters, uint count) {
+  uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
+  const uint end = min(count, index + GN_RAYS_PER_ITEM);
+  const float size = size_of_root(nodes);
+  GnPacket packet;
+  while (index < end) {
+    const uint groups = packet_from(&packet, rays, index, end - index, size);
+    if (groups > 0u) {
+      uint i;
+      walk_packet(&packet, nodes, blocks, rays, 1);
+      for (i = 0u; i < 16u * groups; ++i) occluded[index + i] = (packet.found[i >> 4] >> (i & 15u)) & 1u;
+      store_packet_counters(&packet, counters);
+      index += 16u * groups;
+    } else {
+      const uint stop = min(end, index + 16u);
+      for (; index < stop; ++index) trace_one_any(nodes, blocks, rays, occluded, invalid_rays, counters, index);
+    }
+  }
+}

@@ -6,6 +6,8 @@
 
 #include "group.h"
 
+#if GN_WGS == 1
+
 // Three boxes, lane by axis they were binned along.
 static inline GnBoxes boxes_of(float8 along_x, float8 along_y, float8 along_z) {
   GnBoxes box;
@@ -135,5 +137,7 @@ static inline void sweep_three_axes(const GnMeasure* measure, const int how, con
     }
   }
 }
+
+#endif  // GN_WGS == 1
 
 #endif

@@ -73,7 +73,7 @@ GN_INLINE gn_lanes gn_few_step_measures(const GnMeasure* m, const GnBoxes* box) 
     const gn_lanes lower = box->lo[k] - m->origin[k], upper = box->hi[k] - m->origin[k];
     const gn_lanes middle = 0.5f * (lower + upper), nearer = lower > 0.0f ? lower : upper;
     d[k] = box->hi[k] - box->lo[k];
-    height[k] = (lower > 0.0f) | (upper < 0.0f) ? gn_lanes_abs(nearer) : GN_ALL(0.0f);
+    height[k] = ((lower > 0.0f) | (upper < 0.0f)) ? gn_lanes_abs(nearer) : GN_ALL(0.0f);
     entry[k] = gn_places(m, k, nearer);
     points[2u * k] = gn_places(m, k, middle - 0.28867513f * d[k]);  // half of 1 / sqrt(3)
     points[2u * k + 1u] = gn_places(m, k, middle + 0.28867513f * d[k]);

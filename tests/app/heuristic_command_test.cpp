@@ -57,6 +57,50 @@ TEST_CASE("every heuristic builds a tree of its own and is named") {
   }
 }
 
+TEST_CASE("every number that says where rays are makes another tree") {
+  const auto hash = [](const std::vector<std::string>& more) {
+    return options_of(more).at("hash").get<std::string>();
+  };
+  const auto view = [&](const std::string& heuristic, const std::string& point, const std::string& direction,
+                        const std::string& fov) {
+    return hash({"--heuristic", heuristic, "--point", point, "--direction", direction, "--fov", fov});
+  };
+  for (const std::string heuristic : {"solid-angle", "near-plane", "yaw-pitch"}) {
+    CAPTURE(heuristic);
+    std::set<std::string> hashes;
+    CHECK(hashes.insert(view(heuristic, "1,2,8", "0.1,-0.1,-1", "60,40")).second);
+    CHECK(hashes.insert(view(heuristic, "1,2,8", "0.1,-0.1,-1", "60,20")).second);
+    CHECK(hashes.insert(view(heuristic, "1,2,8", "0.1,-0.1,-1", "30,40")).second);
+    CHECK(hashes.insert(view(heuristic, "1,2,8", "0.4,-0.1,-1", "60,40")).second);
+    CHECK(hashes.insert(view(heuristic, "1,3,8", "0.1,-0.1,-1", "60,40")).second);
+  }
+  CHECK(view("yaw-pitch", "1,2,8", "0.1,-0.1,-1", "60,60") ==
+        hash({"--heuristic", "yaw-pitch", "--point", "1,2,8", "--direction", "0.1,-0.1,-1"}));
+  CHECK(hash({"--heuristic", "plane", "--direction", "0.3,-1,0"}) !=
+        hash({"--heuristic", "plane", "--direction", "0,-1,0.3"}));
+  // Rays from a point, for SPFH to go by, are not parallel ones.
+  CHECK(hash({"--axes", "spfh", "--point", "1,2,8"}) != hash({"--axes", "spfh", "--point", "-20,2,0"}));
+}
+
+TEST_CASE("the light asked for is the one whose rays count") {
+  const program::Folder folder;
+  const auto outcome = run({"info", "gen:atrium:8k", "--json"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const std::size_t lights = json::parse(outcome.out).at("lights").size();
+  REQUIRE(lights >= 2);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < lights; ++i) {
+    const auto built = run({"build", "gen:atrium:8k", "--repeat", "1", "--json", "--axes", "spfh", "--light",
+                            std::to_string(i)});
+    CAPTURE(i, built.err);
+    REQUIRE(built.status == 0);
+    const std::string name = json::parse(built.out).at("options").at("rays_of");
+    CHECK_THAT(name, Catch::StartsWith("light " + std::to_string(i) + " ("));
+    CHECK(names.insert(name.substr(name.find('('))).second);
+  }
+}
+
 TEST_CASE("without rays the tree is the one for rays from everywhere") {
   const json options = options_of({"--heuristic", "sah"});
   CHECK(options.at("heuristic") == "sah");

@@ -84,14 +84,14 @@ TEST_CASE("every number that says where rays are makes another tree") {
 
 TEST_CASE("the light asked for is the one whose rays count") {
   const program::Folder folder;
-  const auto outcome = run({"info", "gen:atrium:8k", "--json"});
+  const auto outcome = run({"info", "gen:atrium:16k", "--json"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.status == 0);
   const std::size_t lights = json::parse(outcome.out).at("lights").size();
   REQUIRE(lights >= 2);
   std::set<std::string> names;
   for (std::size_t i = 0; i < lights; ++i) {
-    const auto built = run({"build", "gen:atrium:8k", "--repeat", "1", "--json", "--axes", "spfh", "--light",
+    const auto built = run({"build", "gen:atrium:16k", "--repeat", "1", "--json", "--axes", "spfh", "--light",
                             std::to_string(i)});
     CAPTURE(i, built.err);
     REQUIRE(built.status == 0);
@@ -161,7 +161,7 @@ TEST_CASE("a picture is the same whatever rays its tree is for") {
                                       "--direction", "0.1,-0.1,-1", "--share", "0.5"};
   const json plain = render("a.png", {});
   const json seen = render("b.png", view);
-  CHECK(seen.at("options").at("heuristic") == "pah-mixed");
+  CHECK(seen.at("options").at("heuristic") == "pah-yaw-pitch-mixed");
   CHECK(seen.at("options").at("rays_of") == "--point 1,2,8 --direction 0.1,-0.1,-1");
   CHECK(seen.at("options").at("share") == 0.5);
   CHECK(seen.at("tree").at("hash") == options_of(view).at("hash"));

@@ -83,7 +83,6 @@ TEST_CASE("every number that says where rays are makes another tree") {
 }
 
 TEST_CASE("the light asked for is the one whose rays count") {
-  const program::Folder folder;
   const auto outcome = run({"info", "gen:atrium:16k", "--json"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.status == 0);

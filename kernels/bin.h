@@ -187,9 +187,15 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
   GnSplit best;
   uint axis;
 #if GN_WGS == 1
+  const GnMeasure* measure = &heuristic->measure;
+  const int steps = gn_has_steps(measure);
   float w[3];
-  if (gn_linear_part(&heuristic->measure, how, w)) {
-    sweep_three_axes(w, heuristic->measure.breaks_ties != 0u, bins, counts, GN_PLANES, node->count, best_of_axis);
+  if (gn_linear_part(measure, how, w)) {
+    sweep_three_axes(measure, GN_SEEN_NOTHING, w, bins, counts, GN_PLANES, node->count, best_of_axis);
+  } else if (steps && how == GN_SEEN_ONE_STEP) {
+    sweep_three_axes(measure, GN_SEEN_ONE_STEP, w, bins, counts, GN_PLANES, node->count, best_of_axis);
+  } else if (steps && how == GN_SEEN_FEW_STEPS) {
+    sweep_three_axes(measure, GN_SEEN_FEW_STEPS, w, bins, counts, GN_PLANES, node->count, best_of_axis);
   } else {
     turn_bins(bins);
     sweep_axes(heuristic, how, node, bins, counts, best_of_axis);

@@ -4,8 +4,6 @@
 #ifndef GNOMON_GROUP_H
 #define GNOMON_GROUP_H
 
-#include "shared/cost_math.h"
-
 // Set by the host's program options; these defaults let a kernel file be compiled by hand.
 #ifndef GN_WGS
 #define GN_WGS 1
@@ -13,6 +11,8 @@
 #ifndef GN_BINS
 #define GN_BINS 16
 #endif
+
+#include "shared/cost_math.h"
 
 #if GN_WGS == 1
 #define GN_LOCAL_ID 0u

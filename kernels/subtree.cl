@@ -73,7 +73,7 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
     __global float8* to = task.buffer == 0u ? primitives1 : primitives0;
     const GnBinning binning = binning_of(&task, triangles);
     const GnNodeView node = view_of(&task, binning);
-    const int how = gn_measure_how(&heuristic.measure, task.lo, task.hi);
+    const int how = count > 1u ? gn_measure_how(&heuristic.measure, task.lo, task.hi) : 0;  // single triangles are leaves
     GnSplit split = gn_no_split();
     GN_GROUP_BARRIER();
 

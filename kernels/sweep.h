@@ -1,12 +1,25 @@
-// The split sweep of a serial group, all three axes side by side: gn_sweep_axis for measures that three face weights
-// describe, with the same operations in the same order in each lane, so with the same split. Bins are as a serial group
-// leaves them (bin.h): lower corner, upper corner negated. Device only. Feeds bin.h.
+// The split sweep of a serial group, all three axes side by side: gn_sweep_axis, with the same operations in the same order
+// in each lane, so with the same split, for measures that have one form in all lanes (lanes.h): three face weights, or
+// steps. Bins are as a serial group leaves them (bin.h): lower corner, upper corner negated. Device only. Feeds bin.h.
 #ifndef GNOMON_SWEEP_H
 #define GNOMON_SWEEP_H
 
 #include "group.h"
 
-// Extents of three boxes, lane by axis they were binned along.
+#if GN_WGS == 1
+
+// Three boxes, lane by axis they were binned along.
+static inline GnBoxes boxes_of(float8 along_x, float8 along_y, float8 along_z) {
+  GnBoxes box;
+  box.lo[0] = (float4)(along_x.s0, along_y.s0, along_z.s0, 0.0f);
+  box.lo[1] = (float4)(along_x.s1, along_y.s1, along_z.s1, 0.0f);
+  box.lo[2] = (float4)(along_x.s2, along_y.s2, along_z.s2, 0.0f);
+  box.hi[0] = -(float4)(along_x.s4, along_y.s4, along_z.s4, 0.0f);
+  box.hi[1] = -(float4)(along_x.s5, along_y.s5, along_z.s5, 0.0f);
+  box.hi[2] = -(float4)(along_x.s6, along_y.s6, along_z.s6, 0.0f);
+  return box;
+}
+
 typedef struct GnExtents {
   float4 x;
   float4 y;
@@ -25,36 +38,48 @@ static inline GnExtents extents_of(float8 along_x, float8 along_y, float8 along_
   return d;
 }
 
-// gn_linear_measure and gn_surface_measure.
-static inline float4 linear_measures(const float* w, GnExtents d) {
-  return d.x * (w[1] * d.z + w[2] * d.y) + w[0] * d.y * d.z;
-}
-static inline float4 surface_measures(GnExtents d) { return d.x * (d.y + d.z) + d.y * d.z; }
-
 static inline int4 counts_at(__local const uint* counts, uint bin) {
   return (int4)((int)counts[bin], (int)counts[GN_BINS + bin], (int)counts[2u * GN_BINS + bin], 0);
 }
 
 #define GN_BIN_AT(bins, axis, bin) (*(__local const float8*)((bins) + (axis)*GN_BINS + (bin)))
 
+// How three boxes are weighed: `how` is a literal, as in gn_sweep_boxes. d: their extents.
+static inline float4 measures_of(const GnMeasure* measure, const int how, const float* w, float8 x, float8 y, float8 z,
+                                 GnExtents d) {
+  const float4 linear = gn_weighed_faces(how == GN_SEEN_NOTHING ? w : measure->weights, d.x, d.y, d.z);
+  if (how == GN_SEEN_NOTHING) return linear;
+  const GnBoxes box = boxes_of(x, y, z);
+  return measure->area_scale * gn_step_measures(measure, how, &box) + linear;
+}
+
 // The cheapest split of every axis, to best_of_axis; axis == GN_NONE where there is none: on an axis without extent all
-// are in the first bin, and no plane divides them. w: the measure's face weights.
-static inline void sweep_three_axes(const float* w, int breaks_ties, __local const GnBin* bins,
+// are in the first bin, and no plane divides them. how: GN_SEEN_NOTHING where the face weights w measure all, else
+// GN_SEEN_ONE_STEP or GN_SEEN_FEW_STEPS. Steps are not taken for bins that are empty on all axes, as small nodes' are.
+static inline void sweep_three_axes(const GnMeasure* measure, const int how, const float* w, __local const GnBin* bins,
                                     __local const uint* counts, uint plane_count, uint count,
                                     __local GnSplit* best_of_axis) {
   float4 right_cost[GN_BINS], right_measure[GN_BINS], right_tie[GN_BINS];
+  float4 measured = (float4)(0.0f), costs_right = (float4)(0.0f), ties_right = (float4)(0.0f);
+  const int breaks_ties = measure->breaks_ties != 0u;
   float8 x = (float8)(INFINITY), y = x, z = x;
   int4 seen = (int4)(0);
   uint i, axis;
   for (i = GN_BINS - 1u; i > 0u; --i) {
-    x = GN_VMIN(GN_BIN_AT(bins, 0u, i), x);
-    y = GN_VMIN(GN_BIN_AT(bins, 1u, i), y);
-    z = GN_VMIN(GN_BIN_AT(bins, 2u, i), z);
-    seen += counts_at(counts, i);
-    const GnExtents d = extents_of(x, y, z);
-    right_measure[i] = linear_measures(w, d);
-    right_cost[i] = right_measure[i] * convert_float4(seen);
-    if (breaks_ties) right_tie[i] = surface_measures(d) * convert_float4(seen);
+    const int4 here = counts_at(counts, i);
+    if (how == GN_SEEN_NOTHING || (here.x | here.y | here.z) != 0) {
+      x = GN_VMIN(GN_BIN_AT(bins, 0u, i), x);
+      y = GN_VMIN(GN_BIN_AT(bins, 1u, i), y);
+      z = GN_VMIN(GN_BIN_AT(bins, 2u, i), z);
+      seen += here;
+      const GnExtents d = extents_of(x, y, z);
+      measured = measures_of(measure, how, w, x, y, z, d);
+      costs_right = measured * convert_float4(seen);
+      if (breaks_ties) ties_right = gn_half_surface(d.x, d.y, d.z) * convert_float4(seen);
+    }
+    right_measure[i] = measured;
+    right_cost[i] = costs_right;
+    right_tie[i] = ties_right;
   }
   float4 best_cost = (float4)(INFINITY), best_tie = (float4)(0.0f), best_left = (float4)(0.0f);
   int4 best_plane = (int4)(-1), best_even = (int4)(0), best_seen = (int4)(0);
@@ -64,12 +89,13 @@ static inline void sweep_three_axes(const float* w, int breaks_ties, __local con
   seen = (int4)(0);
   for (i = 0u; i < plane_count; ++i) {
     const int4 here = counts_at(counts, i);
+    if (how != GN_SEEN_NOTHING && (here.x | here.y | here.z) == 0) continue;
     x = GN_VMIN(GN_BIN_AT(bins, 0u, i), x);
     y = GN_VMIN(GN_BIN_AT(bins, 1u, i), y);
     z = GN_VMIN(GN_BIN_AT(bins, 2u, i), z);
     seen += here;
     const GnExtents d = extents_of(x, y, z);
-    const float4 left = linear_measures(w, d);
+    const float4 left = measures_of(measure, how, w, x, y, z, d);
     const float4 cost = left * convert_float4(seen) + right_cost[i + 1u];
     const int4 even = min(seen, (int4)((int)count) - seen);
     const int4 valid = (here > 0) & (seen < (int4)((int)count));
@@ -77,7 +103,7 @@ static inline void sweep_three_axes(const float* w, int breaks_ties, __local con
     int4 better = even > best_even;
     float4 tie = (float4)(0.0f);
     if (breaks_ties) {
-      tie = surface_measures(d) * convert_float4(seen) + right_tie[i + 1u];
+      tie = gn_half_surface(d.x, d.y, d.z) * convert_float4(seen) + right_tie[i + 1u];
       better = (tie < best_tie) | ((tie == best_tie) & better);
     }
     better = valid & ((best_plane < 0) | (cost < best_cost) | ((cost == best_cost) & better));
@@ -111,5 +137,7 @@ static inline void sweep_three_axes(const float* w, int breaks_ties, __local con
     }
   }
 }
+
+#endif  // GN_WGS == 1
 
 #endif

@@ -11,6 +11,7 @@
 #include "gnomon/render/png.h"
 #include "gnomon/render/render.h"
 #include "gnomon/render/tone.h"
+#include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
 #include "scene_source.h"
@@ -22,6 +23,7 @@ struct Options {
   SceneOptions scene;
   DeviceOptions device;
   BuildOptions build;
+  HeuristicOptions heuristic;
   RenderOptions render;
   double exposure = 0.0;  // in steps of two around the automatic one
   std::string file, heat_map;
@@ -79,10 +81,11 @@ void add_outcome(Json& document, const Options& options, const Outcome& outcome)
 }
 
 std::string facts_of(const Options& options, const cl::DeviceInfo& device, const Scene& scene,
-                     const TimedBuild& build, const Outcome& outcome) {
+                     const std::string& heuristic, const TimedBuild& build, const Outcome& outcome) {
   Facts facts;
   facts.add("device", describe(device));
   facts.add("scene", describe(scene));
+  facts.add("heuristic", heuristic);
   facts.add("tree", describe(build));
   facts.add("picture", options.file + ", " + std::to_string(options.render.width) + " x " +
                            std::to_string(options.render.height) + ", " +
@@ -100,20 +103,24 @@ int run(Options options, Console& console) {
   options.render.heat_map = !options.heat_map.empty();
   options.build.check();
   options.render.check();
+  check(options.heuristic);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const TimedBuild build = build_for_use(context, scene, options.build, {1, false}, console.progress());
+  const BuildOptions tree = with_heuristic(options.build, options.heuristic, scene);
+  const TimedBuild build = build_for_use(context, scene, tree, {1, false}, console.progress());
   const Outcome outcome = render_timed(options, context, build, scene, console.progress());
   write_pictures(options, outcome);
   for (const std::string& note : outcome.result.notes) console.note(note);
   Json document = start_document("render");
   add_device(document, &context.device());
   add_scene(document, options.scene, scene);
-  add_tree_options(document, context.device(), scene.triangles.size(), options.build);
+  add_tree_options(document, context.device(), scene.triangles.size(), tree);
+  add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
   add_outcome(document, options, outcome);
   console.print(document);
-  console.print(facts_of(options, context.device(), scene, build, outcome));
+  console.print(
+      facts_of(options, context.device(), scene, describe(options.heuristic, tree, scene), build, outcome));
   return 0;
 }
 
@@ -138,6 +145,7 @@ void add_render_command(CLI::App& program, OutputOptions& output, Action& action
       ->check(CLI::Range(-20.0, 20.0))
       ->type_name("EV")
       ->capture_default_str();
+  add_heuristic_options(*command, options->heuristic);
   add_build_options(*command, options->build);
   add_device_options(*command, options->device);
   add_output_options(*command, output);

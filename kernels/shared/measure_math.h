@@ -10,27 +10,34 @@
 #include "custom_measure.h"
 #include "seen_measure.h"
 
-// w . (dy dz, dx dz, dx dy). Weights 1: half the surface area (SAH). Weights |n|: the area parallel rays along n see
-// (PAH). Means over a cone of directions, and mixtures of all these, are other weights and cost the same.
-GN_INLINE gn_f32 gn_linear_measure(const gn_f32* w, const gn_f32* lo, const gn_f32* hi) {
-  const gn_f32 dx = hi[0] - lo[0];
-  const gn_f32 dy = hi[1] - lo[1];
-  const gn_f32 dz = hi[2] - lo[2];
+// w . (dy dz, dx dz, dx dy) of boxes with these extents. Weights 1: half the surface area (SAH). Weights |n|: the area
+// parallel rays along n see (PAH). Means over a cone of directions, and mixtures of all these, are other weights and cost
+// the same.
+GN_INLINE gn_lanes gn_weighed_faces(const gn_f32* w, gn_lanes dx, gn_lanes dy, gn_lanes dz) {
   return dx * (w[1] * dz + w[2] * dy) + w[0] * dy * dz;
 }
 
 // Half the surface area, which settles ties whatever the measure.
+GN_INLINE gn_lanes gn_half_surface(gn_lanes dx, gn_lanes dy, gn_lanes dz) { return dx * (dy + dz) + dy * dz; }
+
+GN_INLINE gn_f32 gn_linear_measure(const gn_f32* w, const gn_f32* lo, const gn_f32* hi) {
+  return gn_first_lane(gn_weighed_faces(w, GN_ALL(hi[0] - lo[0]), GN_ALL(hi[1] - lo[1]), GN_ALL(hi[2] - lo[2])));
+}
+
 GN_INLINE gn_f32 gn_surface_measure(const gn_f32* lo, const gn_f32* hi) {
-  const gn_f32 dx = hi[0] - lo[0];
-  const gn_f32 dy = hi[1] - lo[1];
-  const gn_f32 dz = hi[2] - lo[2];
-  return dx * (dy + dz) + dy * dz;
+  return gn_first_lane(gn_half_surface(GN_ALL(hi[0] - lo[0]), GN_ALL(hi[1] - lo[1]), GN_ALL(hi[2] - lo[2])));
 }
 
 // How the parts of a node with this box are to be measured: GN_SEEN_*, 0 where there is nothing to choose.
 GN_INLINE int gn_measure_how(const GnMeasure* measure, const gn_f32* lo, const gn_f32* hi) {
   if (gn_kind_of(measure) == GN_MEASURE_LINEAR || gn_kind_of(measure) == GN_MEASURE_CUSTOM) return 0;
   return gn_seen_how(measure, lo, hi);
+}
+
+// Whether the measure takes steps (step_measure.h) where `how` says so.
+GN_INLINE int gn_has_steps(const GnMeasure* measure) {
+  const gn_u32 kind = gn_kind_of(measure);
+  return kind == GN_MEASURE_SOLID_ANGLE || kind == GN_MEASURE_NEAR_PLANE || kind == GN_MEASURE_YAW_PITCH;
 }
 
 // Whether boxes measured this way need no more than three face weights, which are w then: linear measures always, the

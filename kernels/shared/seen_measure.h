@@ -8,9 +8,12 @@
 
 #include "outline_measure.h"
 #include "polygon_math.h"
+#include "step_measure.h"
 
-// A box counts as small when its diagonal is below 1/10 of its distance: the one-step measures are then right within 1 %.
+// A box counts as small when its diagonal is below 1/10 of its distance, as middling when it is below 1/2: measures in one
+// step and in a few are then right within 1 %.
 #define GN_SMALL_SEEN 0.01f  // (1/10)^2
+#define GN_MIDDLING_SEEN 0.25f
 
 // Four of a box's corners, one face, in the area's frame and in units of `unit`.
 GN_INLINE void gn_face_polygon(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi, gn_u32 axis, gn_f32 at,
@@ -87,27 +90,6 @@ GN_INLINE gn_f32 gn_precise_measure(const GnMeasure* m, const gn_f32* lo, const 
   return sum;
 }
 
-// The one-step measure: the box's area as seen along the ray through its middle. Faces on both sides of an axis average to
-// |p_k| where the eye is beyond them, and to half the size where it is between them. Not for parallel rays, whose measure
-// inside the window is linear (gn_linear_part in measure_math.h).
-GN_INLINE gn_f32 gn_small_measure(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi) {
-  const gn_f32 dx = hi[0] - lo[0], dy = hi[1] - lo[1], dz = hi[2] - lo[2];
-  gn_f32 p[3], area, inverse, level;
-  p[0] = 0.5f * (lo[0] + hi[0]) - m->origin[0];
-  p[1] = 0.5f * (lo[1] + hi[1]) - m->origin[1];
-  p[2] = 0.5f * (lo[2] + hi[2]) - m->origin[2];
-  inverse = gn_kind_of(m) == GN_MEASURE_NEAR_PLANE ? gn_reciprocal(gn_max(gn_dot(p, m->forward), 1e-30f))
-                                             : gn_rough_reciprocal_root(gn_max(gn_dot(p, p), 1e-30f));
-  level = gn_dot(p, m->up) * inverse;
-  p[0] = gn_max(gn_abs(p[0]), 0.5f * dx) * inverse;
-  p[1] = gn_max(gn_abs(p[1]), 0.5f * dy) * inverse;
-  p[2] = gn_max(gn_abs(p[2]), 0.5f * dz) * inverse;
-  area = (p[0] * dy * dz + dx * (p[1] * dz + p[2] * dy)) * inverse * inverse;
-  if (gn_kind_of(m) != GN_MEASURE_YAW_PITCH) return area;
-  // dyaw dpitch = solid angle / cos(pitch)
-  return area * gn_rough_reciprocal_root(gn_max(1.0f - level * level, 1e-12f));
-}
-
 // The square of the distance that the density of rays depends on: from the eye, along forward, or from the up axis.
 GN_INLINE gn_f32 gn_seen_distance_square(const GnMeasure* m, const gn_f32* p) {
   const gn_f32 along = gn_dot(p, m->forward), above = gn_dot(p, m->up);
@@ -178,38 +160,53 @@ GN_INLINE int gn_is_out_of_sight(const GnMeasure* m, const gn_f32* centre, const
 #define GN_SEEN_ONE_STEP 0
 #define GN_SEEN_PRECISE 1
 #define GN_SEEN_NOTHING 2
+#define GN_SEEN_FEW_STEPS 3
+
+// Whether the window holds all of the box, and rays begin before it.
+GN_INLINE int gn_is_seen_whole(const GnMeasure* m, const GnFrameBox* box) {
+  const gn_f32 nearest = box->at[2] - box->reach[2];
+  const gn_f32 depth = gn_kind_of(m) == GN_MEASURE_WINDOW ? 1.0f : nearest;
+  if (!(nearest >= m->near_distance)) return 0;
+  if (!m->culled) return 1;
+  if (!(gn_abs(box->at[0]) + box->reach[0] <= m->half_width * depth)) return 0;
+  if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH) return gn_is_within_pitch(m, box);
+  return gn_abs(box->at[1]) + box->reach[1] <= m->half_height * depth;
+}
 
 // How the boxes of a node must be measured: precisely where it is large as seen from the eye, or not all of it is inside
 // the window and ahead of where rays begin.
 GN_INLINE int gn_seen_how(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi) {
-  gn_f32 centre[3], half_size[3];
+  gn_f32 centre[3], half_size[3], distance, size;
   GnFrameBox box;
   gn_u32 k;
-  int small;
+  int steps = GN_SEEN_ONE_STEP;
   for (k = 0u; k < 3u; ++k) {
     centre[k] = 0.5f * (lo[k] + hi[k]) - m->origin[k];
     half_size[k] = 0.5f * (hi[k] - lo[k]);
   }
-  small = gn_kind_of(m) == GN_MEASURE_WINDOW ||
-          4.0f * gn_dot(half_size, half_size) < GN_SMALL_SEEN * gn_seen_distance_square(m, centre);
-  if (gn_kind_of(m) == GN_MEASURE_SOLID_ANGLE && !m->culled) return small ? GN_SEEN_ONE_STEP : GN_SEEN_PRECISE;
+  if (gn_kind_of(m) != GN_MEASURE_WINDOW) {
+    size = 4.0f * gn_dot(half_size, half_size);
+    distance = gn_seen_distance_square(m, centre);
+    if (!(size < GN_SMALL_SEEN * distance)) steps = size < GN_MIDDLING_SEEN * distance ? GN_SEEN_FEW_STEPS : GN_SEEN_PRECISE;
+  }
+  if (gn_kind_of(m) == GN_MEASURE_SOLID_ANGLE && !m->culled) return steps;
   box = gn_frame_box(m, centre, half_size);
   if (gn_is_out_of_sight(m, centre, half_size, &box)) return GN_SEEN_NOTHING;
-  if (!small) return GN_SEEN_PRECISE;
-  if (!(box.at[2] - box.reach[2] >= m->near_distance)) return GN_SEEN_PRECISE;
-  if (!m->culled) return GN_SEEN_ONE_STEP;
-  {
-    const gn_f32 depth = gn_kind_of(m) == GN_MEASURE_WINDOW ? 1.0f : box.at[2] - box.reach[2];
-    const int across = gn_abs(box.at[0]) + box.reach[0] <= m->half_width * depth;
-    const int along = gn_kind_of(m) == GN_MEASURE_YAW_PITCH ? gn_is_within_pitch(m, &box)
-                                                      : gn_abs(box.at[1]) + box.reach[1] <= m->half_height * depth;
-    return across && along ? GN_SEEN_ONE_STEP : GN_SEEN_PRECISE;
-  }
+  return gn_is_seen_whole(m, &box) ? steps : GN_SEEN_PRECISE;
+}
+
+// Of a box in each lane. how: GN_SEEN_ONE_STEP or GN_SEEN_FEW_STEPS.
+GN_INLINE gn_lanes gn_step_measures(const GnMeasure* m, const int how, const GnBoxes* box) {
+  return how == GN_SEEN_ONE_STEP ? gn_one_step_measures(m, box) : gn_few_step_measures(m, box);
 }
 
 GN_INLINE gn_f32 gn_seen_measure(const GnMeasure* m, int how, const gn_f32* lo, const gn_f32* hi) {
   if (how == GN_SEEN_NOTHING) return 0.0f;
-  return how == GN_SEEN_PRECISE ? gn_precise_measure(m, lo, hi) : gn_small_measure(m, lo, hi);
+  if (how == GN_SEEN_PRECISE) return gn_precise_measure(m, lo, hi);
+  {
+    const GnBoxes box = gn_boxes_of(lo, hi);
+    return gn_first_lane(gn_step_measures(m, how, &box));
+  }
 }
 
 #endif

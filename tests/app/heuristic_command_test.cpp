@@ -1,5 +1,5 @@
-// gnomon build, trace and validate for rays in particular: each heuristic, and each way to ask for what makes
-// no sense.
+// gnomon build, trace, validate and render for rays in particular: each heuristic, and each way to ask for
+// what makes no sense.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -57,6 +57,51 @@ TEST_CASE("every heuristic builds a tree of its own and is named") {
   }
 }
 
+TEST_CASE("every number that says where rays are makes another tree") {
+  const auto hash = [](const std::vector<std::string>& more) {
+    return options_of(more).at("hash").get<std::string>();
+  };
+  const auto view = [&](const std::string& heuristic, const std::string& point, const std::string& direction,
+                        const std::string& fov) {
+    return hash({"--heuristic", heuristic, "--point", point, "--direction", direction, "--fov", fov});
+  };
+  for (const std::string heuristic : {"solid-angle", "near-plane", "yaw-pitch"}) {
+    CAPTURE(heuristic);
+    std::set<std::string> hashes;
+    CHECK(hashes.insert(view(heuristic, "1,2,8", "0.1,-0.1,-1", "60,40")).second);
+    CHECK(hashes.insert(view(heuristic, "1,2,8", "0.1,-0.1,-1", "60,20")).second);
+    CHECK(hashes.insert(view(heuristic, "1,2,8", "0.1,-0.1,-1", "30,40")).second);
+    CHECK(hashes.insert(view(heuristic, "1,2,8", "0.4,-0.1,-1", "60,40")).second);
+    CHECK(hashes.insert(view(heuristic, "1,3,8", "0.1,-0.1,-1", "60,40")).second);
+  }
+  CHECK(view("yaw-pitch", "1,2,8", "0.1,-0.1,-1", "60,60") ==
+        hash({"--heuristic", "yaw-pitch", "--point", "1,2,8", "--direction", "0.1,-0.1,-1"}));
+  CHECK(hash({"--heuristic", "plane", "--direction", "0.3,-1,0"}) !=
+        hash({"--heuristic", "plane", "--direction", "0,-1,0.3"}));
+  // Rays from a point, for SPFH to go by, are not parallel ones.
+  CHECK(hash({"--axes", "spfh", "--point", "1,2,8"}) != hash({"--axes", "spfh", "--point", "-20,2,0"}));
+}
+
+TEST_CASE("the light asked for is the one whose rays count") {
+  const auto outcome = run({"info", "gen:atrium:16k", "--json"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const std::size_t lights = json::parse(outcome.out).at("lights").size();
+  REQUIRE(lights >= 2);
+  std::set<std::string> hashes;
+  for (std::size_t i = 0; i < lights; ++i) {
+    const auto built = run({"build", "gen:atrium:16k", "--repeat", "1", "--json", "--axes", "spfh", "--light",
+                            std::to_string(i)});
+    CAPTURE(i, built.err);
+    REQUIRE(built.status == 0);
+    const json document = json::parse(built.out);
+    const std::string name = document.at("options").at("rays_of");
+    CHECK_THAT(name, Catch::StartsWith("light " + std::to_string(i) + " ("));
+    hashes.insert(document.at("tree").at("hash").get<std::string>());
+  }
+  CHECK(hashes.size() > 1);
+}
+
 TEST_CASE("without rays the tree is the one for rays from everywhere") {
   const json options = options_of({"--heuristic", "sah"});
   CHECK(options.at("heuristic") == "sah");
@@ -84,12 +129,14 @@ TEST_CASE("axis policies and shares are heeded and named") {
   CHECK(options_of({"--axes", "spfh", "--point", "0.5,1,0.5"}).at("hash") != facing.at("hash"));
 }
 
-TEST_CASE("trace and validate build for the same rays, and people read which") {
+TEST_CASE("trace, validate and render build for the same rays, and people read which") {
+  const program::Folder folder;
   const std::vector<std::string> rays{"--heuristic", "window", "--direction", "-0.3,-1,0.2"};
   for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
            {"build", "gen:cottage:8k", "--repeat", "1"},
            {"trace", "gen:cottage:8k", "--count", "2k", "--repeat", "1"},
-           {"validate", "gen:cottage:8k", "--count", "500", "--max-rays", "100"}}) {
+           {"validate", "gen:cottage:8k", "--count", "500", "--max-rays", "100"},
+           {"render", "gen:cottage:8k", "-o", folder.file("a.png"), "--width", "32", "--height", "24"}}) {
     std::vector<std::string> arguments = command;
     arguments.insert(arguments.end(), rays.begin(), rays.end());
     const auto outcome = run(arguments);
@@ -97,6 +144,35 @@ TEST_CASE("trace and validate build for the same rays, and people read which") {
     REQUIRE(outcome.status == 0);
     REQUIRE_THAT(outcome.out, Contains("pah-window, rays of --direction -0.3,-1,0.2"));
   }
+}
+
+TEST_CASE("a picture is the same whatever rays its tree is for") {
+  const program::Folder folder;
+  const auto render = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render", "gen:cottage:8k", "-o", folder.file(name), "--width",
+                                       "48",     "--height",       "32", "--samples",       "1",
+                                       "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto outcome = run(arguments);
+    CAPTURE(outcome.err, more);
+    REQUIRE(outcome.status == 0);
+    return json::parse(outcome.out);
+  };
+  const std::vector<std::string> view{"--heuristic", "yaw-pitch",   "--point", "1,2,8",
+                                      "--direction", "0.1,-0.1,-1", "--share", "0.5"};
+  const json plain = render("a.png", {});
+  const json seen = render("b.png", view);
+  CHECK(seen.at("options").at("heuristic") == "pah-yaw-pitch-mixed");
+  CHECK(seen.at("options").at("rays_of") == "--point 1,2,8 --direction 0.1,-0.1,-1");
+  CHECK(seen.at("options").at("share") == 0.5);
+  CHECK(seen.at("tree").at("hash") == options_of(view).at("hash"));
+  CHECK(seen.at("tree").at("hash") != plain.at("tree").at("hash"));
+  CHECK(plain.at("options").at("rays_of").is_null());
+  CHECK(program::read_text(folder.file("a.png")) == program::read_text(folder.file("b.png")));
+  const auto refused = run({"render", "gen:cottage:8k", "-o", folder.file("c.png"), "--heuristic", "window"});
+  CHECK(refused.status == 2);
+  CHECK_THAT(refused.err, Contains("--heuristic window") && Contains("--light N"));
+  CHECK(folder.names().size() == 2);
 }
 
 TEST_CASE("rays that are missing, doubled or of the wrong kind are refused") {

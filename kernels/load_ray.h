@@ -1,8 +1,8 @@
-// A ray from the batch: eight floats, origin, tmin, direction, tmax. Feeds all tracing kernels.
+// A ray from the batch: eight floats, origin, tmin, direction, tmax (made finite: gn_finite_end). Feeds all tracing kernels.
 #ifndef GNOMON_LOAD_RAY_H
 #define GNOMON_LOAD_RAY_H
 
-#include "shared/layout.h"
+#include "shared/hit_math.h"
 
 static inline GnRay load_ray(__global const float8* rays, uint index) {
   const float8 r = rays[index];
@@ -14,7 +14,7 @@ static inline GnRay load_ray(__global const float8* rays, uint index) {
   ray.direction[0] = r.s4;
   ray.direction[1] = r.s5;
   ray.direction[2] = r.s6;
-  ray.tmax = r.s7;
+  ray.tmax = gn_finite_end(r.s7);
   return ray;
 }
 

@@ -182,7 +182,9 @@ ExactHit exact_intersect(const Ray& ray, const Triangle& triangle) {
 bool is_traceable(const Ray& ray) {
   if (!all_finite(ray.origin) || !all_finite(ray.direction)) return false;
   if (std::isnan(ray.tmin) || std::isnan(ray.tmax)) return false;
-  return ray.direction[0] != 0.0F || ray.direction[1] != 0.0F || ray.direction[2] != 0.0F;
+  const float longest =
+      std::max({std::fabs(ray.direction[0]), std::fabs(ray.direction[1]), std::fabs(ray.direction[2])});
+  return longest >= 0x1p-100F && longest <= 0x1p100F;
 }
 
 bool in_range(const Ray& ray, const FoundHit& found) {

@@ -12,8 +12,8 @@ struct FoundHit {
   ExactHit hit;
 };
 
-// A ray with finite origin and direction, a direction that is not zero and no NaN in its range; others miss
-// everything.
+// A ray with finite origin and direction, the longest component of its direction between 2^-100 and 2^100 in
+// magnitude, and no NaN in its range; others miss everything.
 [[nodiscard]] bool is_traceable(const Ray& ray);
 
 // Whether tmin <= t <= tmax, decided for the exact t.

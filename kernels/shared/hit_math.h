@@ -15,7 +15,7 @@
 typedef struct GnRayFrame {
   gn_f32 origin[3];
   gn_f32 direction[3];
-  gn_f32 inverse[3];  // 1 / direction; +-inf for zero components
+  gn_f32 inverse[3];  // 1 / direction; +-inf for zero components, NaN for denormal ones
   gn_f32 shear_x;     // direction[kx] / direction[kz]
   gn_f32 shear_y;
   gn_u32 kx, ky, kz;  // kz: the axis of the largest direction component
@@ -23,14 +23,26 @@ typedef struct GnRayFrame {
 
 GN_INLINE int gn_is_finite(gn_f32 x) { return (gn_bits_of(x) & 0x7f800000u) != 0x7f800000u; }
 
-// A ray we can trace: finite origin and direction, direction not zero, a range that is not NaN.
+// A ray we can trace: finite origin and direction, a direction neither too short nor too long, a range that is not NaN.
 GN_INLINE int gn_ray_is_valid(const GnRay* ray) {
-  int k, nonzero = 0;
+  gn_f32 longest = 0.0f;
+  int k;
   for (k = 0; k < 3; ++k) {
     if (!gn_is_finite(ray->origin[k]) || !gn_is_finite(ray->direction[k])) return 0;
-    nonzero |= ray->direction[k] != 0.0f;
+    longest = gn_max(longest, gn_abs(ray->direction[k]));
   }
-  return nonzero && ray->tmin == ray->tmin && ray->tmax == ray->tmax;
+  return longest >= GN_SHORTEST_DIRECTION && longest <= GN_LONGEST_DIRECTION && ray->tmin == ray->tmin &&
+         ray->tmax == ray->tmax;
+}
+
+// The end of a ray's range as tracers use it: hits have finite t. Two hits at infinity could not be ranked.
+GN_INLINE gn_f32 gn_finite_end(gn_f32 tmax) { return tmax > GN_FLOAT_MAX ? GN_FLOAT_MAX : tmax; }
+
+// Of a direction's component. Of a denormal one the reciprocal may overflow, and devices may flush it: then the ray's way
+// along this axis is not known and its slabs must bound nothing, as NaN does in gn_box_entry.
+GN_INLINE gn_f32 gn_slab_inverse(gn_f32 component) {
+  const gn_u32 magnitude = gn_bits_of(component) & 0x7fffffffu;
+  return magnitude != 0u && magnitude < 0x00800000u ? gn_float_of(0x7fc00000u) : 1.0f / component;
 }
 
 GN_INLINE GnRayFrame gn_ray_frame(const GnRay* ray) {
@@ -39,7 +51,7 @@ GN_INLINE GnRayFrame gn_ray_frame(const GnRay* ray) {
   for (k = 0; k < 3; ++k) {
     frame.origin[k] = ray->origin[k];
     frame.direction[k] = ray->direction[k];
-    frame.inverse[k] = 1.0f / ray->direction[k];
+    frame.inverse[k] = gn_slab_inverse(ray->direction[k]);
   }
   frame.kz = gn_abs(ray->direction[1]) > gn_abs(ray->direction[0]) ? 1u : 0u;
   if (gn_abs(ray->direction[2]) > gn_abs(ray->direction[frame.kz])) frame.kz = 2u;
@@ -59,7 +71,8 @@ GN_INLINE GnRayFrame gn_ray_frame(const GnRay* ray) {
 GN_INLINE gn_f32 gn_slab_limit(gn_f32 t) { return t * (t < 0.0f ? 1.0f - GN_SLAB_SLACK : 1.0f + GN_SLAB_SLACK); }
 
 // Where the ray enters the box, or +inf if it misses it within [tmin, limit]. limit comes from gn_slab_limit.
-// 0 * inf (a ray in a face's plane) gives NaN, which loses every comparison: that slab then bounds nothing.
+// 0 * inf (a ray in a face's plane) gives NaN, which loses every comparison: that slab then bounds nothing. So does a
+// reciprocal that is NaN.
 GN_INLINE gn_f32 gn_box_entry(const GnRayFrame* ray, const gn_f32* lo, const gn_f32* hi, gn_f32 tmin, gn_f32 limit) {
   gn_f32 near = tmin, far = GN_INFINITY;
   int k;

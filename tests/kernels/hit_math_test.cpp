@@ -264,14 +264,39 @@ TEST_CASE("where floats meet a triangle that is met for certain is as far off as
   REQUIRE(widest > 0.01);  // the bound is within reach: a hundredth of it would be seen to fail
 }
 
-TEST_CASE("rays with NaN, infinite origins or no direction are not valid") {
+TEST_CASE("rays with NaN, infinite origins, no direction or one too short or too long are not valid") {
   const float nan = std::nanf("");
   REQUIRE(gn_ray_is_valid(std::data({gnomon::test::ray({0, 0, 0}, {0, 0, 1})})) != 0);
   for (const GnRay& bad :
        {gnomon::test::ray({nan, 0, 0}, {0, 0, 1}), gnomon::test::ray({0, INFINITY, 0}, {0, 0, 1}),
         gnomon::test::ray({0, 0, 0}, {0, nan, 1}), gnomon::test::ray({0, 0, 0}, {0, 0, 0}),
         gnomon::test::ray({0, 0, 0}, {0, -0.0F, 0}), gnomon::test::ray({0, 0, 0}, {INFINITY, 0, 1}),
-        gnomon::test::ray({0, 0, 0}, {0, 0, 1}, nan), gnomon::test::ray({0, 0, 0}, {0, 0, 1}, 0, nan)}) {
+        gnomon::test::ray({0, 0, 0}, {0, 0, 1}, nan), gnomon::test::ray({0, 0, 0}, {0, 0, 1}, 0, nan),
+        gnomon::test::ray({0, 0, 0}, {1e-40F, 0, -1e-39F}),
+        gnomon::test::ray({0, 0, 0}, {0, -0x1.fffffep-101F, 0}),
+        gnomon::test::ray({0, 0, 0}, {0x1.000002p100F, 1, 1})}) {
     REQUIRE(gn_ray_is_valid(&bad) == 0);
+  }
+  for (const float length : {0x1p-100F, 0x1p100F}) {
+    for (const float other : {0.0F, 1e-45F, -length}) {
+      const GnRay good = gnomon::test::ray({0, 0, 0}, {other, length, other});
+      REQUIRE(gn_ray_is_valid(&good) != 0);
+    }
+  }
+}
+
+// What a device makes of denormals: it may flush them, and 1 / 0 is infinite.
+TEST_CASE("a denormal component of a direction loses no box") {
+  for (const float component : {1e-45F, 1e-39F, 1.1e-38F}) {
+    for (const float sense : {1.0F, -1.0F}) {
+      const GnRay r = gnomon::test::ray({0, 0, 0}, {sense * component, 1, 0});
+      const GnRayFrame frame = gn_ray_frame(&r);
+      CAPTURE(component, sense);
+      // Reached at t = 1e30: x from 1e30 * component on.
+      const float near_x = sense * 1e30F * component * 0.5F;
+      const float lo[3] = {gn_min(near_x, 4 * near_x), 0.99e30F, -1};
+      const float hi[3] = {gn_max(near_x, 4 * near_x), 1.01e30F, 1};
+      REQUIRE(gn_box_entry(&frame, lo, hi, 0.0F, gn_slab_limit(GN_FLOAT_MAX)) <= 1e30F);
+    }
   }
 }

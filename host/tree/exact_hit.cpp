@@ -187,8 +187,14 @@ bool is_traceable(const Ray& ray) {
   return longest >= 0x1p-100F && longest <= 0x1p100F;
 }
 
+// Not std::clamp: a tmin of +inf and a tmax of -inf leave nothing, and must go on doing so.
+FiniteRange::FiniteRange(const Ray& ray)
+    : tmin(std::max(ray.tmin, -std::numeric_limits<float>::max())),
+      tmax(std::min(ray.tmax, std::numeric_limits<float>::max())) {}
+
 bool in_range(const Ray& ray, const FoundHit& found) {
-  return compare(ray, found, ray.tmin) >= 0 && compare(ray, found, ray.tmax) <= 0;
+  const FiniteRange range(ray);
+  return compare(ray, found, range.tmin) >= 0 && compare(ray, found, range.tmax) <= 0;
 }
 
 bool nearer(const Ray& ray, const FoundHit& a, const FoundHit& b) {

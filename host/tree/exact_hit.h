@@ -16,7 +16,14 @@ struct FoundHit {
 // magnitude, and no NaN in its range; others miss everything.
 [[nodiscard]] bool is_traceable(const Ray& ray);
 
-// Whether tmin <= t <= tmax, decided for the exact t.
+// The range that rays are traced in: their own, but for what lies beyond the largest float.
+struct FiniteRange {
+  explicit FiniteRange(const Ray& ray);
+  float tmin;
+  float tmax;
+};
+
+// Whether t is in the finite range, decided for the exact t.
 [[nodiscard]] bool in_range(const Ray& ray, const FoundHit& found);
 
 // Whether a's exact t is smaller than b's, both on the same ray.

@@ -17,7 +17,8 @@ ReferenceTrace trace_by(std::span<const Ray> rays, const MakeWalk& make_walk) {
   out.hits.reserve(rays.size());
   out.counters.reserve(rays.size());
   for (Ray ray : rays) {
-    ray.tmax = gn_finite_end(ray.tmax);
+    ray.tmin = gn_finite_tmin(ray.tmin);
+    ray.tmax = gn_finite_tmax(ray.tmax);
     auto walk = make_walk(ray);
     if (gn_ray_is_valid(&ray) != 0) {
       walk.run();

@@ -35,8 +35,10 @@ GN_INLINE int gn_ray_is_valid(const GnRay* ray) {
          ray->tmax == ray->tmax;
 }
 
-// The end of a ray's range as tracers use it: hits have finite t. Two hits at infinity could not be ranked.
-GN_INLINE gn_f32 gn_finite_end(gn_f32 tmax) { return tmax > GN_FLOAT_MAX ? GN_FLOAT_MAX : tmax; }
+// The ends of a ray's range as tracers use them: hits have finite t. Two hits at infinity could not be ranked. An empty
+// range stays empty, and NaN stays NaN.
+GN_INLINE gn_f32 gn_finite_tmin(gn_f32 tmin) { return tmin < -GN_FLOAT_MAX ? -GN_FLOAT_MAX : tmin; }
+GN_INLINE gn_f32 gn_finite_tmax(gn_f32 tmax) { return tmax > GN_FLOAT_MAX ? GN_FLOAT_MAX : tmax; }
 
 // Of a direction's component. Of a denormal one the reciprocal may overflow, and devices may flush it: then the ray's way
 // along this axis is not known and its slabs must bound nothing, as NaN does in gn_box_entry.
@@ -215,13 +217,33 @@ GN_INLINE int gn_signs_agree(const GnRayFrame* ray, const gn_f32* v0, const gn_f
   return !(positive && negative) && (positive || negative || open);
 }
 
+// Whether t, a mean of the corners' distances r by weights with these permanents, may be wrong by more than 2^-28 of
+// itself: weights are wrong by 8 x 2^-53 of their permanents, which moves the mean by that share of the distances' spread,
+// and sums round by less. So it is for needles and for rays that start in the triangle's plane or next to it.
+GN_INLINE int gn_mean_is_doubtful(const GnWide* r, gn_u32 kz, const GnWide* permanents, GnWide distance) {
+#if GN_HAS_FP64
+  const double a = r[kz], b = r[3 + kz], c = r[6 + kz];
+  const double most = a > b ? (a > c ? a : c) : (b > c ? b : c);
+  const double least = a < b ? (a < c ? a : c) : (b < c ? b : c);
+  return 2.0 * GN_WIDE_EPSILON * (permanents[0] + permanents[1] + permanents[2]) * (most - least) >
+         3.7252903e-09 * fabs(distance);
+#else
+  (void)r;
+  (void)kz;
+  (void)permanents;
+  (void)distance;
+  return 0;
+#endif
+}
+
 // Fills u, v and t / t_unit from the edges' determinants and the corners' distances along axis kz. t is a mean of these
-// distances with weights of one sign: well-conditioned however thin the triangle.
-GN_INLINE void gn_fill_hit(const GnWide* r, gn_u32 kz, gn_f32 direction, gn_f32 t_unit, GnWide* weights, GnHit* hit) {
+// distances with weights of one sign. True: that mean is not good enough for t.
+GN_INLINE int gn_fill_hit(const GnWide* r, gn_u32 kz, gn_f32 direction, gn_f32 t_unit, GnWide* weights,
+                          const GnWide* permanents, GnHit* hit) {
   GnWide sum = gn_wide_add(gn_wide_add(weights[0], weights[1]), weights[2]);
   GnWide distance = gn_wide_of(0.0f);
   const int side = gn_wide_sign(sum);
-  int i;
+  int i, doubtful = 0;
   for (i = 0; i < 3; ++i) {
     // Rounding may leave a weight with the wrong sign where the ray meets an edge: it is zero there.
     if (gn_wide_sign(weights[i]) * side < 0) weights[i] = gn_wide_of(0.0f);
@@ -230,11 +252,13 @@ GN_INLINE void gn_fill_hit(const GnWide* r, gn_u32 kz, gn_f32 direction, gn_f32 
   if (gn_wide_sign(sum) == 0) {  // met, but too thin even for wide arithmetic: its middle
     for (i = 0; i < 3; ++i) weights[i] = gn_wide_of(1.0f);
     sum = gn_wide_of(3.0f);
+    doubtful = 1;
   }
   for (i = 0; i < 3; ++i) distance = gn_wide_add(distance, gn_wide_multiply(weights[i], r[3 * i + kz]));
   hit->t = gn_wide_ratio(distance, gn_wide_scale(sum, direction)) * t_unit;
   hit->u = gn_wide_ratio(weights[1], sum);
   hit->v = gn_wide_ratio(weights[2], sum);
+  return doubtful || gn_mean_is_doubtful(r, kz, permanents, distance);
 }
 
 // The corners seen from the ray's origin; returns the largest distance along an axis.
@@ -269,7 +293,11 @@ GN_INLINE int gn_triangle_resolve(const GnRayFrame* ray, const gn_f32* v0, const
     weights[i] = gn_wide_determinant(direction, r + 3 * next, r + 3 * previous, permanents + i);
   }
   if (verdict < 0 && !gn_signs_agree(ray, v0, v1, v2, weights, permanents)) return 0;
-  gn_fill_hit(r, ray->kz, direction[ray->kz], direction_unit / unit, weights, hit);
+  if (gn_fill_hit(r, ray->kz, direction[ray->kz], direction_unit / unit, weights, permanents, hit)) {
+#if GN_HAS_FP64
+    hit->t = gn_exact_t(ray->direction, ray->origin, v0, v1, v2);
+#endif
+  }
   return 1;
 }
 

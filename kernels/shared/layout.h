@@ -54,7 +54,7 @@ GN_SIZE_IS(GnNode, 32);
 #define GN_LONGEST_DIRECTION 1.2676506e+30f
 
 // One ray: points origin + t * direction with tmin <= t <= tmax. The direction need not have unit length, but see above.
-// t is a finite float: what lies beyond the largest is not met, whatever tmax says.
+// t is a finite float: what lies beyond the largest is not met, however wide the range.
 typedef struct GnRay {
   gn_f32 origin[3];
   gn_f32 tmin;

@@ -182,11 +182,17 @@ TEST_CASE("directions from the shortest to the longest hit what unit ones do", "
 
 TEST_CASE("a hit beyond the largest float is none", "[portable]") {
   const Traced traced = trace(gnomon::test::grid(2, 0x1p30F),
-                              {ray({0.7F, 0, 0.4F}, {0, 0x1p-97F, 0}), ray({0.7F, 0, 0.4F}, {0, 0x1p-98F, 0})});
+                              {ray({0.7F, 0, 0.4F}, {0, 0x1p-97F, 0}), ray({0.7F, 0, 0.4F}, {0, 0x1p-98F, 0}),
+                               ray({0.7F, 0, 0.4F}, {0, -0x1p-97F, 0}, -INFINITY),
+                               ray({0.7F, 0, 0.4F}, {0, -0x1p-98F, 0}, -INFINITY)});
   REQUIRE(traced.closest.hits[0].t == 0x1p127F);
   REQUIRE(traced.any.occluded[0] == 1);
-  REQUIRE(traced.closest.hits[1].primitive == GN_NONE);
-  REQUIRE(traced.any.occluded[1] == 0);
+  REQUIRE(traced.closest.hits[2].t == -0x1p127F);
+  REQUIRE(traced.any.occluded[2] == 1);
+  for (const std::size_t beyond : {1U, 3U}) {
+    REQUIRE(traced.closest.hits[beyond].primitive == GN_NONE);
+    REQUIRE(traced.any.occluded[beyond] == 0);
+  }
 }
 
 TEST_CASE("an empty scene is missed by every ray, and no rays give no answers", "[portable]") {

@@ -1,5 +1,6 @@
-// The stability catalogue's rays through Embree, default and ROBUST, beside gnomon: how many hits each loses, sees where
-// none are, or gets wrong. One JSON row per case and tracer on stdout. Usage: stability_peer [RAYS-PER-CASE [SEED]]
+// The stability catalogue's rays through Embree, default and ROBUST, beside gnomon: how many hits each loses,
+// sees where none are, or gets wrong. One JSON row per case and tracer on stdout. Usage: stability_peer
+// [RAYS-PER-CASE [SEED]]
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -93,7 +94,8 @@ int main(int argc, char** argv) {
       if (ours.rays_judged == 0) continue;
       print_row(info, "gnomon", context.device().name, options.seed, ours);
       print_row(info, "Embree " RTC_VERSION_STRING " MEDIUM", context.device().name, options.seed, plain);
-      print_row(info, "Embree " RTC_VERSION_STRING " MEDIUM ROBUST", context.device().name, options.seed, robust);
+      print_row(info, "Embree " RTC_VERSION_STRING " MEDIUM ROBUST", context.device().name, options.seed,
+                robust);
     }
     return 0;
   } catch (const std::exception& error) {

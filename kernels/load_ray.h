@@ -1,4 +1,4 @@
-// A ray from the batch: eight floats, origin, tmin, direction, tmax (a finite range: gn_finite_tmin). Feeds all tracing kernels.
+// A ray from the batch: eight floats, origin, tmin, direction, tmax; its range is made finite. Feeds all tracing kernels.
 #ifndef GNOMON_LOAD_RAY_H
 #define GNOMON_LOAD_RAY_H
 

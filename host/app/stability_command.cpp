@@ -36,7 +36,8 @@ std::vector<std::uint32_t> numbers_of(const std::string& only) {
   for (std::string word; std::getline(words, word, ',');) {
     const auto number = parse_count(word);
     if (!number || *number > 1000000) {
-      throw Error(ErrorCode::kInvalidArgument, "--only \"" + only + "\": write numbers with commas between, as in 3,17");
+      throw Error(ErrorCode::kInvalidArgument,
+                  "--only \"" + only + "\": write numbers with commas between, as in 3,17");
     }
     numbers.push_back(static_cast<std::uint32_t>(*number));
   }
@@ -60,30 +61,40 @@ void append_rows(const std::string& file, const std::vector<Json>& rows) {
   std::string text;
   for (const Json& row : rows) text += row.dump() + "\n";
   std::ofstream out(file, std::ios::app);
-  if (!(out << text << std::flush)) throw Error(ErrorCode::kIo, "cannot write " + file + "; is its folder there?");
+  if (!(out << text << std::flush))
+    throw Error(ErrorCode::kIo, "cannot write " + file + "; is its folder there?");
 }
 
 Json start_row(const char* kind, const cl::Context& context, const Options& options) {
-  return {{"bench", "stability"}, {"schema", 1}, {"kind", kind}, {"commit", commit()},
-          {"device", context.device().name}, {"driver", context.device().driver}, {"fp64", context.device().fp64},
+  return {{"bench", "stability"},
+          {"schema", 1},
+          {"kind", kind},
+          {"commit", commit()},
+          {"device", context.device().name},
+          {"driver", context.device().driver},
+          {"fp64", context.device().fp64},
           {"seed", options.seed}};
 }
 
 Json document_of(const Options& options, const cl::Context& context, const std::vector<Json>& rows, bool ok) {
   Json document = start_document("stability");
   add_device(document, &context.device());
-  document["options"] = {{"scenes", options.scenes}, {"only", options.only}, {"seed", options.seed},
-                         {"rays_per_case", options.rays_per_case}, {"rays", options.soak_rays}};
+  document["options"] = {{"scenes", options.scenes},
+                         {"only", options.only},
+                         {"seed", options.seed},
+                         {"rays_per_case", options.rays_per_case},
+                         {"rays", options.soak_rays}};
   document["ok"] = ok;
   document["rows"] = rows;
   return document;
 }
 
-int finish(const Options& options, Console& console, const cl::Context& context, const std::vector<Json>& rows, bool ok,
-           const std::string& text) {
+int finish(const Options& options, Console& console, const cl::Context& context,
+           const std::vector<Json>& rows, bool ok, const std::string& text) {
   append_rows(options.rows, rows);
   console.print(document_of(options, context, rows, ok));
-  console.print(text + (ok ? console.paint(Paint::kGood, "ok") : console.paint(Paint::kBad, "FAILED")) + "\n");
+  console.print(text + (ok ? console.paint(Paint::kGood, "ok") : console.paint(Paint::kBad, "FAILED")) +
+                "\n");
   return ok ? kOk : kMismatch;
 }
 
@@ -130,7 +141,8 @@ int run_soak(const Options& options, Console& console) {
   row["t_error_p99_of_parts"] = spread_of_p99(report);
   row["parts"] = Json::array();
   for (const stability::SoakPart& part : report.parts) row["parts"].push_back(to_json(part, exact));
-  if (report.stopped) console.note("stopped after " + std::to_string(total.rays) + " rays; these are what they gave");
+  if (report.stopped)
+    console.note("stopped after " + std::to_string(total.rays) + " rays; these are what they gave");
   const bool ok = total.faults(exact) == 0 && total.rays > 0;
   const int status = finish(options, console, context, {row}, ok, soak_table(report, exact) + "\n");
   return report.stopped && ok ? kInterrupted : status;
@@ -155,7 +167,8 @@ void add_stability_command(CLI::App& program, OutputOptions& output, Action& act
   const auto options = std::make_shared<Options>();
   CLI::App* const command =
       program.add_subcommand("stability", "Run the rays, shapes and areas on which tracers go wrong.");
-  command->add_option("scenes", options->scenes, "scenes for case 18 or the long run; generated ones otherwise")
+  command
+      ->add_option("scenes", options->scenes, "scenes for case 18 or the long run; generated ones otherwise")
       ->type_name("SCENE");
   command->add_flag("--list", options->list, "name all cases and end");
   command->add_option("--only", options->only, "run these cases, as in 3,17")->type_name("NUMBERS");
@@ -169,9 +182,12 @@ void add_stability_command(CLI::App& program, OutputOptions& output, Action& act
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(
-      "Every case goes through every builder and every flavour of tracing that the device has. Counts are of rays: lost\n"
-      "hits, false ones, wrong triangles, any hit against closest hit; t errors are in ulp of the exact t. A long run\n"
-      "places each scene at 0, 1e3 and 1e5 times its size from the origin and aims half of its rays at corners and edges;\n"
+      "Every case goes through every builder and every flavour of tracing that the device has. Counts are of "
+      "rays: lost\n"
+      "hits, false ones, wrong triangles, any hit against closest hit; t errors are in ulp of the exact t. A "
+      "long run\n"
+      "places each scene at 0, 1e3 and 1e5 times its size from the origin and aims half of its rays at "
+      "corners and edges;\n"
       "Ctrl-C ends it with what it has. Exit status 6 when a case fails, 130 when a long run was stopped.\n\n"
       "Examples:\n  gnomon stability\n  gnomon stability --only 1,2,3 --rays-per-case 100k\n"
       "  gnomon stability model.glb --rays 1e6");

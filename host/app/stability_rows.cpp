@@ -51,7 +51,8 @@ std::string ulp_text(double ulp) {
 }  // namespace
 
 Json to_json(const stability::CaseInfo& info) {
-  return {{"case", info.number}, {"group", info.group}, {"name", info.name}, {"expectation", info.expectation}};
+  return {
+      {"case", info.number}, {"group", info.group}, {"name", info.name}, {"expectation", info.expectation}};
 }
 
 Json to_json(const Verdict& verdict) {
@@ -69,8 +70,11 @@ Json to_json(const Verdict& verdict) {
 }
 
 Json to_json(const SoakPart& part, bool exact) {
-  Json row{{"scene", part.scene}, {"scene_hash", part.scene_hash}, {"builder", part.builder},
-           {"triangles", part.triangles}, {"offset", part.offset}};
+  Json row{{"scene", part.scene},
+           {"scene_hash", part.scene_hash},
+           {"builder", part.builder},
+           {"triangles", part.triangles},
+           {"offset", part.offset}};
   add_counts(row, part.oracle);
   row["at_corners"] = part.at_corners;
   row["at_edges"] = part.at_edges;
@@ -91,15 +95,16 @@ std::string case_list(const std::vector<stability::CaseInfo>& cases) {
 }
 
 std::string verdict_table(const std::vector<Verdict>& verdicts, const Console& console) {
-  Table table({"case", "name", "builder", "flavour", "rays", "hits", "lost", "false", "wrong", "any", "t p99", "t max",
-               "verdict"});
+  Table table({"case", "name", "builder", "flavour", "rays", "hits", "lost", "false", "wrong", "any", "t p99",
+               "t max", "verdict"});
   std::string faults;
   for (const Verdict& v : verdicts) {
     const OracleReport& o = v.oracle;
-    table.add({std::to_string(v.info.number), v.info.name, v.builder, v.flavour, std::to_string(o.rays_judged),
-               std::to_string(o.hits), std::to_string(o.lost), std::to_string(o.false_hits),
-               std::to_string(o.wrong_primitive), std::to_string(o.any_closest_disagree),
-               ulp_text(o.t_errors.quantile(0.99)), ulp_text(o.max_t_error_ulp), v.ok() ? "ok" : "FAILED"});
+    table.add({std::to_string(v.info.number), v.info.name, v.builder, v.flavour,
+               std::to_string(o.rays_judged), std::to_string(o.hits), std::to_string(o.lost),
+               std::to_string(o.false_hits), std::to_string(o.wrong_primitive),
+               std::to_string(o.any_closest_disagree), ulp_text(o.t_errors.quantile(0.99)),
+               ulp_text(o.max_t_error_ulp), v.ok() ? "ok" : "FAILED"});
     if (v.ok()) continue;
     std::ostringstream line;
     line << "case " << v.info.number << ", " << v.info.name << ", " << v.builder << ", " << v.flavour << ": ";
@@ -117,14 +122,15 @@ std::string verdict_table(const std::vector<Verdict>& verdicts, const Console& c
 }
 
 std::string soak_table(const stability::SoakReport& report, bool exact) {
-  Table table({"scene", "offset", "builder", "rays", "corners", "edges", "exactly", "hits", "lost", "false", "wrong",
-               "any", "flavours", "t p99", "t max", "verdict"});
+  Table table({"scene", "offset", "builder", "rays", "corners", "edges", "exactly", "hits", "lost", "false",
+               "wrong", "any", "flavours", "t p99", "t max", "verdict"});
   const auto add = [&](const SoakPart& p, const std::string& scene, const std::string& offset) {
     const OracleReport& o = p.oracle;
-    table.add({scene, offset, p.builder, std::to_string(p.rays), std::to_string(p.at_corners), std::to_string(p.at_edges),
-               std::to_string(p.exactly), std::to_string(o.hits), std::to_string(o.lost), std::to_string(o.false_hits),
-               std::to_string(o.wrong_primitive), std::to_string(o.any_closest_disagree),
-               std::to_string(p.flavours_differ), ulp_text(o.t_errors.quantile(0.99)), ulp_text(o.max_t_error_ulp),
+    table.add({scene, offset, p.builder, std::to_string(p.rays), std::to_string(p.at_corners),
+               std::to_string(p.at_edges), std::to_string(p.exactly), std::to_string(o.hits),
+               std::to_string(o.lost), std::to_string(o.false_hits), std::to_string(o.wrong_primitive),
+               std::to_string(o.any_closest_disagree), std::to_string(p.flavours_differ),
+               ulp_text(o.t_errors.quantile(0.99)), ulp_text(o.max_t_error_ulp),
                p.faults(exact) == 0 ? "ok" : "FAILED"});
   };
   for (const SoakPart& part : report.parts) add(part, part.scene, fixed(part.offset, 0));

@@ -14,7 +14,8 @@ namespace gnomon::app {
 
 [[nodiscard]] std::string case_list(const std::vector<stability::CaseInfo>& cases);
 // One line a verdict; what is wrong is explained below the table.
-[[nodiscard]] std::string verdict_table(const std::vector<stability::Verdict>& verdicts, const Console& console);
+[[nodiscard]] std::string verdict_table(const std::vector<stability::Verdict>& verdicts,
+                                        const Console& console);
 [[nodiscard]] std::string soak_table(const stability::SoakReport& report, bool exact);
 
 }  // namespace gnomon::app

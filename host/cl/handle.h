@@ -61,8 +61,8 @@ class Handle {
     if (object_ != nullptr) HandleTraits<T>::release(object_);
   }
 
-  // Shares an object somebody else owns: adds a reference of our own. Throws Error{kDevice} where that fails: without it
-  // our release would take the owner's.
+  // Shares an object somebody else owns: adds a reference of our own. Throws Error{kDevice} where that fails:
+  // without it our release would take the owner's.
   [[nodiscard]] static Handle share(T object) {
     if (object != nullptr) check(HandleTraits<T>::retain(object), "clRetain");
     return Handle(object);

@@ -26,8 +26,10 @@ Ray towards(const Point& origin, const Point& target) {
 
 bool passes_exactly(const Ray& ray, const Point& target) {
   for (std::size_t k = 0; k < 3; ++k) {
-    // Exact where both are floats within 2^29 of each other; a ray that is not exact differs by more than this rounds.
-    if (static_cast<double>(ray.origin[k]) + static_cast<double>(ray.direction[k]) != static_cast<double>(target[k]))
+    // Exact where both are floats within 2^29 of each other; a ray that is not exact differs by more than
+    // this rounds.
+    if (static_cast<double>(ray.origin[k]) + static_cast<double>(ray.direction[k]) !=
+        static_cast<double>(target[k]))
       return false;
   }
   return true;
@@ -45,7 +47,8 @@ Ray through(const Point& target, float reach, SteadyRandom& random) {
       continue;
     }
     // In last bits of the target: an even number of them up to twice the target is a float.
-    const double bit = static_cast<double>(std::nextafter(magnitude, kInfinity)) - static_cast<double>(magnitude);
+    const double bit =
+        static_cast<double>(std::nextafter(magnitude, kInfinity)) - static_cast<double>(magnitude);
     const double wanted = random.between(-1.0, 1.0) * static_cast<double>(std::min(magnitude, reach));
     const double start = 2.0 * std::nearbyint((place - wanted) / (2.0 * bit));
     origin[k] = static_cast<float>(start * bit);

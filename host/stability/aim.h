@@ -11,7 +11,8 @@ namespace gnomon::stability {
 
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-[[nodiscard]] Ray ray_of(const Point& origin, const Point& direction, float tmin = 0.0F, float tmax = kInfinity);
+[[nodiscard]] Ray ray_of(const Point& origin, const Point& direction, float tmin = 0.0F,
+                         float tmax = kInfinity);
 
 [[nodiscard]] Point middle_of(const Point& a, const Point& b);
 
@@ -21,8 +22,8 @@ inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Whether the ray has the point exactly at t = 1.
 [[nodiscard]] bool passes_exactly(const Ray& ray, const Point& target);
 
-// A ray that meets the target at t = 1, exactly so nearly always: its direction's components are multiples of the
-// target's last bits, not longer than the target's coordinates or `reach`. For scenes at any place.
+// A ray that meets the target at t = 1, exactly so nearly always: its direction's components are multiples of
+// the target's last bits, not longer than the target's coordinates or `reach`. For scenes at any place.
 [[nodiscard]] Ray through(const Point& target, float reach, SteadyRandom& random);
 
 // A point of the triangle: a corner (0), the middle of an edge (1), about its middle (2).

@@ -1,5 +1,5 @@
-// Influence areas that are hard: for each, a tree built for its rays is the reference's and loses nothing, and a forest
-// with its local tree answers as the global tree alone does, to the last bit.
+// Influence areas that are hard: for each, a tree built for its rays is the reference's and loses nothing,
+// and a forest with its local tree answers as the global tree alone does, to the last bit.
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -7,6 +7,7 @@
 #include "gnomon/areas/area_rays.h"
 #include "gnomon/areas/measure.h"
 #include "gnomon/stability/aim.h"
+#include "gnomon/stability/area_layers.h"
 #include "gnomon/stability/cases.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/bvh_check.h"
@@ -64,7 +65,8 @@ std::vector<Ray> rays_for(const Bench& bench, const InfluenceArea& area, const T
     const Triangle& t = mesh[random.below(static_cast<unsigned>(mesh.size()))];
     rays.push_back(through(place_on(t, i % 2, random), 12.0F, random));
   }
-  for (std::size_t i = 0; i < rays.size(); i += 8) {  // from the eye, the window's middle or the centre itself
+  for (std::size_t i = 0; i < rays.size();
+       i += 8) {  // from the eye, the window's middle or the centre itself
     const Vec3d& o = area.frame().origin;
     for (std::size_t k = 0; k < 3; ++k) rays[i].origin[k] = static_cast<float>(o[k]);
   }
@@ -89,7 +91,8 @@ void check_trees(const Bench& bench, const CaseInfo& info, const Setting& settin
         std::size_t at = 0;
         while (at < all.size() && all[at].builder != name) at += bench.flavours.size();
         if (at >= all.size()) {
-          for (const Flavour& flavour : bench.flavours) all.push_back(empty_verdict(bench, info, name, flavour.name));
+          for (const Flavour& flavour : bench.flavours)
+            all.push_back(empty_verdict(bench, info, name, flavour.name));
         }
         const std::span<Verdict> verdicts = std::span(all).subspan(at, bench.flavours.size());
         const DeviceBvh tree = build_device(bench.context, mesh, options);
@@ -115,22 +118,20 @@ void check_lookup(const Bench& bench, const DeviceForest& forest, AreaLookup loo
   const ForestTraceResult occluded = tracer.any(specimen.rays);
   judge_answers(specimen, hits.hits, occluded.occluded, hits.invalid_rays, verdict);
   for (std::size_t i = 0; i < specimen.rays.size(); ++i) {
-    if (std::memcmp(&hits.hits[i], &closest.hits[i], sizeof(Hit)) != 0 || occluded.occluded[i] != any.occluded[i])
+    if (std::memcmp(&hits.hits[i], &closest.hits[i], sizeof(Hit)) != 0 ||
+        occluded.occluded[i] != any.occluded[i])
       verdict.fault("ray " + std::to_string(i) + " is answered otherwise than by the global tree");
   }
 }
 
-void check_forest(const Bench& bench, const CaseInfo& info, const Setting& setting, const Triangles& mesh,
-                  std::vector<Verdict>& forests) {
+// A forest of the setting's areas, grown by so much, over a scene, for these rays.
+void check_forest(const Bench& bench, const CaseInfo& info, const Setting& setting, const Specimen& specimen,
+                  double growth, std::vector<Verdict>& forests) {
   std::vector<LocalTree> trees;
-  Specimen specimen{mesh, {}, Expect::kOracle};
-  for (const InfluenceArea& area : setting.areas) {
-    trees.push_back({area, {}, Membership::kExact, setting.tolerance, 0x1p-16});
-    const std::vector<Ray> rays = rays_for(bench, area, mesh);
-    specimen.rays.insert(specimen.rays.end(), rays.begin(), rays.end());
-  }
-  const DeviceForest forest = build_forest(bench.context, mesh, trees);
-  const DeviceBvh global = build_device(bench.context, mesh);
+  for (const InfluenceArea& area : setting.areas)
+    trees.push_back({area, {}, Membership::kExact, setting.tolerance, growth});
+  const DeviceForest forest = build_forest(bench.context, specimen.triangles, trees);
+  const DeviceBvh global = build_device(bench.context, specimen.triangles);
   const Tracer alone(bench.context, global);
   const TraceResult closest = alone.closest(specimen.rays);
   const TraceResult any = alone.any(specimen.rays);
@@ -141,13 +142,27 @@ void check_forest(const Bench& bench, const CaseInfo& info, const Setting& setti
   }
 }
 
+// The scene by all areas' own rays and others; and each area alone among layers just outside it.
+void check_forests(const Bench& bench, const CaseInfo& info, const Setting& setting, const Triangles& mesh,
+                   std::vector<Verdict>& forests) {
+  Specimen scene{mesh, {}, Expect::kOracle};
+  for (const InfluenceArea& area : setting.areas) {
+    const std::vector<Ray> rays = rays_for(bench, area, mesh);
+    scene.rays.insert(scene.rays.end(), rays.begin(), rays.end());
+    const Triangles around = layers_around(area, bench.seed);
+    const Specimen layers{around, rays_at_layers(area, around, bench.rays, bench.seed), Expect::kOracle};
+    check_forest(bench, info, {{area}, setting.tolerance}, layers, 0.0, forests);
+  }
+  check_forest(bench, info, setting, scene, 0x1p-16, forests);
+}
+
 std::vector<Verdict> check_areas(const Bench& bench, const CaseInfo& info, const MakeSettings& settings) {
   std::vector<Verdict> all;
   std::vector<Verdict> forests;
   const Triangles mesh = scene_of(bench);
   for (const Setting& setting : settings()) {
     check_trees(bench, info, setting, mesh, all);
-    check_forest(bench, info, setting, mesh, forests);
+    check_forests(bench, info, setting, mesh, forests);
   }
   all.insert(all.end(), forests.begin(), forests.end());
   return all;
@@ -169,13 +184,13 @@ std::vector<Setting> lights_along_axes() {
 
 // Side by side sharing a face, one in another, one the same again.
 std::vector<Setting> touching_and_nested() {
-  return {{{window({5, 5, 0}, {0, 0, 1}, 3, 5), window({5, 5, 5}, {0, 0, 1}, 3, 5), window({5, 5, 5}, {0, 0, 1}, 3, 5),
-            InfluenceArea::omni({5, 5, 5}, 4.0), InfluenceArea::omni({5, 5, 5}, 1.0),
-            view({5, 5, 2}, {0, 0, 1}, 40, 0.25, 6)}}};
+  return {{{window({5, 5, 0}, {0, 0, 1}, 3, 5), window({5, 5, 5}, {0, 0, 1}, 3, 5),
+            window({5, 5, 5}, {0, 0, 1}, 3, 5), InfluenceArea::omni({5, 5, 5}, 4.0),
+            InfluenceArea::omni({5, 5, 5}, 1.0), view({5, 5, 2}, {0, 0, 1}, 40, 0.25, 6)}}};
 }
 
-// Rays of all directions to the area's axis meet areas whose tolerance lies at, just below and just above |cos| = 1, and
-// at 1, where no direction is refused.
+// Rays of all directions to the area's axis meet areas whose tolerance lies at, just below and just above
+// |cos| = 1, and at 1, where no direction is refused.
 std::vector<Setting> affinities() {
   std::vector<Setting> out;
   for (const double tolerance : {0.0, 0x1p-53, 0.01, 1.0 - 0x1p-53, 1.0}) {
@@ -190,25 +205,32 @@ void add_area_cases(std::vector<Case>& cases) {
   const auto add = [&](std::uint32_t number, const char* name, MakeSettings settings) {
     cases.push_back({{number, "areas", name, "the reference's trees, the global tree's answers"},
                      {},
-                     [settings](const Bench& bench, const CaseInfo& info) { return check_areas(bench, info, settings); }});
+                     [settings](const Bench& bench, const CaseInfo& info) {
+                       return check_areas(bench, info, settings);
+                     }});
   };
   add(41, "eye inside boxes", [] {
-    return std::vector<Setting>{{{view({5, 5, 5}, {0.2, 0.1, 1}, 90, 0.01)}}, {{InfluenceArea::omni({5, 5, 5}, 9)}}};
+    return std::vector<Setting>{{{view({5, 5, 5}, {0.2, 0.1, 1}, 90, 0.01)}},
+                                {{InfluenceArea::omni({5, 5, 5}, 9)}}};
   });
   add(42, "boxes across the near plane", [] {
-    return std::vector<Setting>{{{view({5, 5, -1}, {0, 0, 1}, 100, 6.0)}}, {{view({2, 8, 1}, {1, -1, 0.5}, 70, 4.0)}}};
+    return std::vector<Setting>{{{view({5, 5, -1}, {0, 0, 1}, 100, 6.0)}},
+                                {{view({2, 8, 1}, {1, -1, 0.5}, 70, 4.0)}}};
   });
   add(43, "boxes behind the near plane", [] {
-    return std::vector<Setting>{{{view({5, 5, -2}, {0, 0, 1}, 60, 20.0)}}, {{view({5, 5, 20}, {0, 0, 1}, 60, 1.0)}}};
+    return std::vector<Setting>{{{view({5, 5, -2}, {0, 0, 1}, 60, 20.0)}},
+                                {{view({5, 5, 20}, {0, 0, 1}, 60, 1.0)}}};
   });
   add(44, "frusta of 1 degree", [] { return frusta(1.0); });
   add(45, "frusta of 179 degrees", [] { return frusta(179.0); });
   add(46, "light along the axes and (1, 1, 1)", lights_along_axes);
   add(47, "windows that cull everything", [] {
-    return std::vector<Setting>{{{window({100, 5, -1}, {0, 0, 1}, 1, 12)}}, {{view({5, 5, -50}, {0, 0, -1}, 60, 1.0)}}};
+    return std::vector<Setting>{{{window({100, 5, -1}, {0, 0, 1}, 1, 12)}},
+                                {{view({5, 5, -50}, {0, 0, -1}, 60, 1.0)}}};
   });
   add(48, "an area outside the scene", [] {
-    return std::vector<Setting>{{{InfluenceArea::omni({200, 0, 0}, 5.0)}}, {{window({5, 5, 90}, {0, 0, 1}, 3, 5)}}};
+    return std::vector<Setting>{{{InfluenceArea::omni({200, 0, 0}, 5.0)}},
+                                {{window({5, 5, 90}, {0, 0, 1}, 3, 5)}}};
   });
   add(49, "touching and nested areas", touching_and_nested);
   add(50, "affinity at its tolerance", affinities);

@@ -1,5 +1,5 @@
-// What the stability catalogue is made of: numbered cases, what is put to a tracer, and what came of it. Not for
-// running them (catalogue.h). Feeds every file of this room and the command.
+// What the stability catalogue is made of: numbered cases, what is put to a tracer, and what came of it. Not
+// for running them (catalogue.h). Feeds every file of this room and the command.
 #pragma once
 
 #include <cstdint>
@@ -49,8 +49,8 @@ struct Verdict {
   void fault(const std::string& what) {
     if (other_faults++ == 0) first_fault = what;
   }
-  // Devices without double may call a ray that passes an edge by 2^-40 of the distance a hit (exact-hits.md): there
-  // only losses count.
+  // Devices without double may call a ray that passes an edge by 2^-40 of the distance a hit (exact-hits.md):
+  // there only losses count.
   bool exact = true;
   [[nodiscard]] bool ok() const {
     const std::uint64_t wrong = exact ? oracle.mismatches() : oracle.lost + oracle.any_closest_disagree;

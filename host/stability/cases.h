@@ -26,8 +26,8 @@ struct Bench {
   std::vector<Builder> builders;
   std::vector<Flavour> flavours;
   std::uint64_t seed = 1;
-  std::uint32_t rays = 256;     // of one kind on one specimen, about
-  std::vector<Scene> scenes;    // given by the user
+  std::uint32_t rays = 256;   // of one kind on one specimen, about
+  std::vector<Scene> scenes;  // given by the user
   Progress progress;
 };
 
@@ -38,7 +38,8 @@ struct Case {
   std::function<std::vector<Verdict>(const Bench&, const CaseInfo&)> check;
 };
 
-void add_ray_cases(std::vector<Case>& cases);       // 1 to 19
+void add_ray_cases(std::vector<Case>& cases);       // 1 to 11
+void add_range_cases(std::vector<Case>& cases);     // 12 to 19
 void add_geometry_cases(std::vector<Case>& cases);  // 21 to 39
 void add_area_cases(std::vector<Case>& cases);      // 41 to 59
 
@@ -46,7 +47,8 @@ void add_area_cases(std::vector<Case>& cases);      // 41 to 59
 [[nodiscard]] std::vector<Verdict> check_scales(const Bench& bench, const CaseInfo& info);
 [[nodiscard]] std::vector<Verdict> check_indices(const Bench& bench, const CaseInfo& info);
 
-// Traces a specimen by every flavour through a tree, judges, and adds what came of it to the flavours' verdicts.
+// Traces a specimen by every flavour through a tree, judges, and adds what came of it to the flavours'
+// verdicts.
 void judge_specimen(const Bench& bench, const Specimen& specimen, const DeviceBvh& tree,
                     std::span<Verdict> verdicts);
 // The same for answers at hand.

@@ -19,6 +19,7 @@ constexpr double kMostUlpWithoutDouble = 4.0;
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   add_ray_cases(cases);
+  add_range_cases(cases);
   add_geometry_cases(cases);
   add_area_cases(cases);
   return cases;
@@ -28,7 +29,8 @@ Bench bench_of(const cl::Context& context, const CatalogueOptions& options, cons
   if (options.rays < 1 || options.rays > 1000000) {
     throw Error(ErrorCode::kInvalidArgument, "stability: rays must be 1 to 1000000");
   }
-  return {context, builders(), flavours_of(context.device()), options.seed, options.rays, options.scenes, progress};
+  return {context,        builders(), flavours_of(context.device()), options.seed, options.rays,
+          options.scenes, progress};
 }
 
 std::vector<Verdict> run_specimens(const Bench& bench, const Case& one) {
@@ -39,7 +41,8 @@ std::vector<Verdict> run_specimens(const Bench& bench, const Case& one) {
     for (const Flavour& flavour : bench.flavours)
       verdicts.push_back(empty_verdict(bench, one.info, builder.name, flavour.name));
     for (const Specimen& specimen : specimens) {
-      judge_specimen(bench, specimen, build_device(bench.context, specimen.triangles, builder.options), verdicts);
+      judge_specimen(bench, specimen, build_device(bench.context, specimen.triangles, builder.options),
+                     verdicts);
     }
     all.insert(all.end(), verdicts.begin(), verdicts.end());
   }
@@ -47,7 +50,8 @@ std::vector<Verdict> run_specimens(const Bench& bench, const Case& one) {
 }
 
 bool wanted(const CatalogueOptions& options, std::uint32_t number) {
-  return options.only.empty() || std::find(options.only.begin(), options.only.end(), number) != options.only.end();
+  return options.only.empty() ||
+         std::find(options.only.begin(), options.only.end(), number) != options.only.end();
 }
 
 }  // namespace
@@ -76,14 +80,17 @@ void judge_answers(const Specimen& specimen, std::span<const Hit> hits, std::spa
   verdict.invalid_rays += invalid_rays;
   verdict.oracle.add(report);
   if (invalid_rays != specimen.invalid) {
-    verdict.fault(std::to_string(invalid_rays) + " rays are refused, not " + std::to_string(specimen.invalid));
+    verdict.fault(std::to_string(invalid_rays) + " rays are refused, not " +
+                  std::to_string(specimen.invalid));
   }
   if (specimen.in_order && report.ties > 0) {
-    verdict.fault(std::to_string(report.ties) + " rays name another triangle than the first of equally near ones");
+    verdict.fault(std::to_string(report.ties) +
+                  " rays name another triangle than the first of equally near ones");
   }
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const bool hit = hits[i].primitive != GN_NONE;
-    if ((specimen.expect == Expect::kAllHit && !hit) || (specimen.expect == Expect::kNoneHit && hit && verdict.exact))
+    if ((specimen.expect == Expect::kAllHit && !hit) ||
+        (specimen.expect == Expect::kNoneHit && hit && verdict.exact))
       verdict.fault("ray " + std::to_string(i) + (hit ? " hits" : " misses"));
   }
 }

@@ -1,5 +1,5 @@
-// Checks of the geometry group that compare bits: scaled scenes with each other, and sums of whole numbers with the
-// same sums in 64 bits.
+// Checks of the geometry group that compare bits: scaled scenes with each other, and sums of whole numbers
+// with the same sums in 64 bits.
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -29,7 +29,8 @@ bool same_tree(const Bvh& a, const Bvh& b, int power) {
 }
 
 bool same_hit(const Hit& a, const Hit& b, int power) {
-  return a.primitive == b.primitive && std::ldexp(a.t, power) == b.t && std::memcmp(&a.u, &b.u, 2 * sizeof a.u) == 0;
+  return a.primitive == b.primitive && std::ldexp(a.t, power) == b.t &&
+         std::memcmp(&a.u, &b.u, 2 * sizeof a.u) == 0;
 }
 
 Specimen base_specimen(const Bench& bench) {
@@ -59,7 +60,8 @@ std::vector<Verdict> check_scales(const Bench& bench, const CaseInfo& info) {
   const Specimen base = base_specimen(bench);
   for (const Builder& builder : bench.builders) {
     std::vector<Verdict> verdicts;
-    for (const Flavour& flavour : bench.flavours) verdicts.push_back(empty_verdict(bench, info, builder.name, flavour.name));
+    for (const Flavour& flavour : bench.flavours)
+      verdicts.push_back(empty_verdict(bench, info, builder.name, flavour.name));
     const DeviceBvh base_tree = build_device(bench.context, base.triangles, builder.options);
     const Bvh base_bvh = download_bvh(bench.context, base_tree);
     std::vector<std::vector<Hit>> base_hits;
@@ -73,9 +75,11 @@ std::vector<Verdict> check_scales(const Bench& bench, const CaseInfo& info) {
       for (std::size_t f = 0; f < bench.flavours.size(); ++f) {
         const std::string where = " at scale 2^" + std::to_string(power);
         if (!same) verdicts[f].fault("another tree" + where);
-        const std::vector<Hit> hits = Tracer(bench.context, tree, bench.flavours[f].options).closest(specimen.rays).hits;
+        const std::vector<Hit> hits =
+            Tracer(bench.context, tree, bench.flavours[f].options).closest(specimen.rays).hits;
         for (std::size_t i = 0; i < hits.size(); ++i) {
-          if (!same_hit(base_hits[f][i], hits[i], power)) verdicts[f].fault("another hit of ray " + std::to_string(i) + where);
+          if (!same_hit(base_hits[f][i], hits[i], power))
+            verdicts[f].fault("another hit of ray " + std::to_string(i) + where);
         }
       }
     }
@@ -97,10 +101,12 @@ void check_memory(const Bench& bench, const Builder& builder, Verdict& verdict) 
   for (std::size_t i = 0; i < whole.size(); ++i) {
     const double ratio = static_cast<double>(whole[i].bytes) / static_cast<double>(half[i].bytes);
     const bool grows = half[i].bytes > (1U << 28U);
-    if (ratio < 1.0 || (grows && std::fabs(ratio - 2.0) > 0.01)) verdict.fault("buffer " + whole[i].name + " of " + std::to_string(whole[i].bytes) + " bytes");
+    if (ratio < 1.0 || (grows && std::fabs(ratio - 2.0) > 0.01))
+      verdict.fault("buffer " + whole[i].name + " of " + std::to_string(whole[i].bytes) + " bytes");
   }
   for (const BufferNeed& need : whole) {
-    if (need.name == "nodes" && need.bytes != std::uint64_t{2} * kMost * sizeof(Node)) verdict.fault("nodes take " + std::to_string(need.bytes) + " bytes");
+    if (need.name == "nodes" && need.bytes != std::uint64_t{2} * kMost * sizeof(Node))
+      verdict.fault("nodes take " + std::to_string(need.bytes) + " bytes");
   }
 }
 
@@ -112,7 +118,8 @@ void check_levels(Verdict& verdict) {
     const Level level = make_level({root}, chunk_size);
     std::uint64_t at = 0;
     for (const GnChunk& chunk : level.chunks) {
-      if (chunk.begin != at || chunk.end <= chunk.begin) verdict.fault("chunk " + std::to_string(chunk.begin) + " is not next");
+      if (chunk.begin != at || chunk.end <= chunk.begin)
+        verdict.fault("chunk " + std::to_string(chunk.begin) + " is not next");
       at = chunk.end;
     }
     if (at != kMost) verdict.fault("chunks end at " + std::to_string(at));
@@ -129,7 +136,8 @@ void check_levels(Verdict& verdict) {
     for (const GnTask& task : tasks) {
       triangles += task.end - task.begin;
       const bool is_left = task.begin == 0;
-      if (task.slot != std::uint64_t{2} * left + (is_left ? 0 : 1)) verdict.fault("a child stands at " + std::to_string(task.slot));
+      if (task.slot != std::uint64_t{2} * left + (is_left ? 0 : 1))
+        verdict.fault("a child stands at " + std::to_string(task.slot));
     }
     if (triangles != kMost) verdict.fault("children hold " + std::to_string(triangles) + " triangles");
   }
@@ -137,11 +145,14 @@ void check_levels(Verdict& verdict) {
 
 // Runs of rays cover every count up to the last.
 void check_runs(Verdict& verdict) {
-  for (const std::uint32_t count : {1U, 63U, 64U, kMost, kMost + 1U, kMost + 2U, 0xffffffc0U, 0xfffffffeU, 0xffffffffU}) {
+  for (const std::uint32_t count :
+       {1U, 63U, 64U, kMost, kMost + 1U, kMost + 2U, 0xffffffc0U, 0xfffffffeU, 0xffffffffU}) {
     const std::uint64_t runs = (std::uint64_t{count} + 63) / 64;
     const auto first = static_cast<std::uint32_t>(64 * (runs - 1));
-    if (gn_run_end(first, count, 64) != count) verdict.fault("the last run of " + std::to_string(count) + " ends elsewhere");
-    if (runs > 1 && gn_run_end(first - 64, count, 64) != first) verdict.fault("a run of " + std::to_string(count) + " is cut");
+    if (gn_run_end(first, count, 64) != count)
+      verdict.fault("the last run of " + std::to_string(count) + " ends elsewhere");
+    if (runs > 1 && gn_run_end(first - 64, count, 64) != first)
+      verdict.fault("a run of " + std::to_string(count) + " is cut");
   }
 }
 

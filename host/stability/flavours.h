@@ -1,5 +1,5 @@
-// Every way to build and to trace that a device has: what stability runs go through. A new builder or flavour is added
-// here, and nowhere else in this room. Feeds the catalogue and the soak.
+// Every way to build and to trace that a device has: what stability runs go through. A new builder or flavour
+// is added here, and nowhere else in this room. Feeds the catalogue and the soak.
 #pragma once
 
 #include <vector>

@@ -9,7 +9,8 @@ namespace gnomon::stability {
 
 namespace {
 
-// Rays through corners, edges and faces of triangles picked at random; `reach`: how far off they start at most.
+// Rays through corners, edges and faces of triangles picked at random; `reach`: how far off they start at
+// most.
 std::vector<Ray> rays_through(const Triangles& mesh, float reach, std::uint32_t count, std::uint64_t seed) {
   SteadyRandom random(seed);
   std::vector<Ray> rays;
@@ -45,7 +46,8 @@ std::vector<Specimen> mixed_scales(const Bench& bench) {
   SteadyRandom random(bench.seed);
   for (std::uint32_t i = 0; i < bench.rays; ++i) {  // from the hall's walls at the small thing
     const Point target = place_on(mesh[random.below(400)], i % 2, random);
-    rays.push_back(towards(place_on(hall[random.below(static_cast<unsigned>(hall.size()))], 2, random), target));
+    rays.push_back(
+        towards(place_on(hall[random.below(static_cast<unsigned>(hall.size()))], 2, random), target));
   }
   return {{mesh, rays, Expect::kOracle}};
 }
@@ -123,7 +125,19 @@ std::vector<Specimen> on_a_line(const Bench& bench) {
     const float x = std::ldexp(1.0F, static_cast<int>(i % 100) - 60);
     far.rays[i] = ray_of({1.2F * x, 0.25F * x, x}, {0, 0, -1});
   }
-  return {specimen_of(bench, row), far};
+  // Outwards through all boxes, near ones first, each level of the tree waiting: every ray's first hit is
+  // another plate.
+  SteadyRandom random(bench.seed);
+  Specimen outwards;
+  for (int i = -60; i < 40; ++i) {
+    const float x = std::ldexp(1.0F, i);
+    const float low = x * static_cast<float>(random.unit());
+    outwards.triangles.push_back(
+        triangle_of({x, low, -x}, {x, low + 0.02F * x, -x}, {x, low + 0.01F * x, 2.0F * x}));
+  }
+  for (std::uint32_t i = 0; i < bench.rays; ++i)
+    outwards.rays.push_back(ray_of({0, 0, 0}, {1, static_cast<float>(random.unit()), 0}));
+  return {specimen_of(bench, row), far, outwards};
 }
 
 // One triangle far off makes bins so wide that all others fall into one.
@@ -170,7 +184,8 @@ void add_geometry_cases(std::vector<Case>& cases) {
   add(30, "everything on one line", "as the oracle", on_a_line);
   add(31, "centres within one bin", "as the oracle", one_bin);
   add(32, "coordinates of 2^48 and of 2^-60", "as the oracle", extremes);
-  cases.push_back({{33, "geometry", "numbers next to 2^31 and 2^32, simulated", "no sum wraps"}, {}, check_indices});
+  cases.push_back(
+      {{33, "geometry", "numbers next to 2^31 and 2^32, simulated", "no sum wraps"}, {}, check_indices});
 }
 
 }  // namespace gnomon::stability

@@ -13,7 +13,8 @@ float between(SteadyRandom& random, double low, double high) {
 }
 
 // n x n cells of two triangles each; at(i, j) is the corner of cell (i, j).
-void add_cells(std::uint32_t n, const std::function<Point(std::uint32_t, std::uint32_t)>& at, Triangles& out) {
+void add_cells(std::uint32_t n, const std::function<Point(std::uint32_t, std::uint32_t)>& at,
+               Triangles& out) {
   for (std::uint32_t i = 0; i < n; ++i) {
     for (std::uint32_t j = 0; j < n; ++j) {
       out.push_back(triangle_of(at(i, j), at(i, j + 1), at(i + 1, j + 1)));
@@ -82,8 +83,10 @@ Triangles t_junctions(std::uint32_t n) {
       const std::uint32_t size = i % 2 == 0 ? 4 : 2;
       for (std::uint32_t a = 0; a < 4; a += size) {
         for (std::uint32_t b = 0; b < 4; b += size) {
-          out.push_back(triangle_of(at(x + a, z + b), at(x + a, z + b + size), at(x + a + size, z + b + size)));
-          out.push_back(triangle_of(at(x + a, z + b), at(x + a + size, z + b + size), at(x + a + size, z + b)));
+          out.push_back(
+              triangle_of(at(x + a, z + b), at(x + a, z + b + size), at(x + a + size, z + b + size)));
+          out.push_back(
+              triangle_of(at(x + a, z + b), at(x + a + size, z + b + size), at(x + a + size, z + b)));
         }
       }
     }

@@ -23,7 +23,8 @@ double seconds_since(Clock::time_point start) {
 std::vector<Scene> scenes_of(const SoakOptions& options) {
   if (!options.scenes.empty()) return options.scenes;
   std::vector<Scene> scenes;
-  for (const auto& [name, triangles] : {std::pair{"atrium", 60000}, {"city", 60000}, {"crowd", 30000}, {"terrain", 30000}}) {
+  for (const auto& [name, triangles] :
+       {std::pair{"atrium", 60000}, {"city", 60000}, {"crowd", 30000}, {"terrain", 30000}}) {
     scenes.push_back(generate_scene(name, static_cast<std::uint64_t>(triangles), 1));
   }
   return scenes;
@@ -116,7 +117,8 @@ class RaySource {
   // A place may be the ray's own start.
   static Ray valid(Ray ray) {
     const float* const d = ray.direction;
-    if (std::max({std::fabs(d[0]), std::fabs(d[1]), std::fabs(d[2])}) < GN_SHORTEST_DIRECTION) ray.direction[1] = 1.0F;
+    if (std::max({std::fabs(d[0]), std::fabs(d[1]), std::fabs(d[2])}) < GN_SHORTEST_DIRECTION)
+      ray.direction[1] = 1.0F;
     return ray;
   }
 
@@ -129,7 +131,8 @@ class RaySource {
 // How far the whole run is, for people.
 class Clockwork {
  public:
-  Clockwork(const Progress& progress, std::uint64_t rays) : progress_(progress), rays_(static_cast<double>(rays)) {}
+  Clockwork(const Progress& progress, std::uint64_t rays)
+      : progress_(progress), rays_(static_cast<double>(rays)) {}
   // False: stop.
   bool tell(std::uint64_t more) {
     done_ += static_cast<double>(more);
@@ -153,7 +156,8 @@ class Clockwork {
 // One scene at one distance: its tree and one tracer per flavour.
 class Station {
  public:
-  Station(const cl::Context& context, Triangles triangles, const Builder& builder, const std::vector<Flavour>& flavours)
+  Station(const cl::Context& context, Triangles triangles, const Builder& builder,
+          const std::vector<Flavour>& flavours)
       : triangles_(std::move(triangles)),
         tree_(build_device(context, triangles_, builder.options)),
         candidates_(triangles_) {
@@ -168,7 +172,8 @@ class Station {
       const std::vector<Hit> hits = tracers_[f].closest(rays).hits;
       const std::vector<std::uint32_t> occluded = tracers_[f].any(rays).occluded;
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (std::memcmp(&hits[i], &closest.hits[i], sizeof(Hit)) != 0 || occluded[i] != any.occluded[i]) differ[i] = 1;
+        if (std::memcmp(&hits[i], &closest.hits[i], sizeof(Hit)) != 0 || occluded[i] != any.occluded[i])
+          differ[i] = 1;
       }
     }
     OracleOptions options;
@@ -194,7 +199,8 @@ class Station {
 };
 
 // Adds the part; false: stopped.
-bool run_part(const Station& station, const SoakOptions& options, std::uint64_t rays, SoakPart& part, Clockwork& clock) {
+bool run_part(const Station& station, const SoakOptions& options, std::uint64_t rays, SoakPart& part,
+              Clockwork& clock) {
   const RaySource source(station.triangles(), options.seed);
   std::vector<Ray> chunk;
   while (part.rays < rays) {
@@ -236,12 +242,14 @@ SoakReport soak(const cl::Context& context, const SoakOptions& options, const Pr
   const std::uint64_t each = (options.rays + places - 1) / places;
   Clockwork clock(progress, each * places);
   for (const Scene& scene : scenes) {
-    if (scene.triangles.empty()) throw Error(ErrorCode::kBadScene, "soak: scene " + scene.name + " has no triangles");
+    if (scene.triangles.empty())
+      throw Error(ErrorCode::kBadScene, "soak: scene " + scene.name + " has no triangles");
     const double size = extent_of(scene.triangles).size();
     for (const double offset : offsets) {
       for (const Builder& builder : builders()) {
         if (report.stopped) break;
-        const Station station(context, moved(scene.triangles, static_cast<float>(offset * size)), builder, flavours);
+        const Station station(context, moved(scene.triangles, static_cast<float>(offset * size)), builder,
+                              flavours);
         SoakPart part;
         part.scene = scene.name;
         part.scene_hash = scene_hash(scene);

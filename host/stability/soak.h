@@ -1,5 +1,6 @@
-// The long run: rays of many kinds through scenes at many distances from the origin, traced by every flavour and judged
-// ray by ray, in chunks, so that any number of rays takes the same memory. Not the catalogue. Feeds the command.
+// The long run: rays of many kinds through scenes at many distances from the origin, traced by every flavour
+// and judged ray by ray, in chunks, so that any number of rays takes the same memory. Not the catalogue.
+// Feeds the command.
 #pragma once
 
 #include <cstdint>
@@ -28,14 +29,15 @@ struct SoakPart {
   std::uint64_t triangles = 0;
   double offset = 0.0;  // from the origin on every axis, in units of the scene's longest side
   std::uint64_t rays = 0;
-  std::uint64_t at_corners = 0;  // of them, aimed at corners,
-  std::uint64_t at_edges = 0;    // at middles of edges,
-  std::uint64_t exactly = 0;     // and of both, so that the ray truly has the point
-  std::uint64_t invalid = 0;     // refused by the tracer
+  std::uint64_t at_corners = 0;       // of them, aimed at corners,
+  std::uint64_t at_edges = 0;         // at middles of edges,
+  std::uint64_t exactly = 0;          // and of both, so that the ray truly has the point
+  std::uint64_t invalid = 0;          // refused by the tracer
   std::uint64_t flavours_differ = 0;  // rays that two flavours answer otherwise
   OracleReport oracle;
   [[nodiscard]] std::uint64_t faults(bool exact) const {
-    return (exact ? oracle.mismatches() : oracle.lost + oracle.any_closest_disagree) + invalid + flavours_differ;
+    return (exact ? oracle.mismatches() : oracle.lost + oracle.any_closest_disagree) + invalid +
+           flavours_differ;
   }
 };
 
@@ -43,12 +45,13 @@ struct SoakReport {
   std::vector<SoakPart> parts;
   std::vector<std::string> flavours;
   double seconds = 0.0;
-  bool stopped = false;  // before all rays were judged, at the caller's wish
+  bool stopped = false;                  // before all rays were judged, at the caller's wish
   [[nodiscard]] SoakPart total() const;  // sums; scene, hash and offset are left empty
 };
 
-// The caller's progress function also hears how long it will take yet; when it returns false, what has been judged is
-// returned. Throws Error as builders and tracers do, kInvalidArgument (no rays, no chunk).
-[[nodiscard]] SoakReport soak(const cl::Context& context, const SoakOptions& options, const Progress& progress = {});
+// The caller's progress function also hears how long it will take yet; when it returns false, what has been
+// judged is returned. Throws Error as builders and tracers do, kInvalidArgument (no rays, no chunk).
+[[nodiscard]] SoakReport soak(const cl::Context& context, const SoakOptions& options,
+                              const Progress& progress = {});
 
 }  // namespace gnomon::stability

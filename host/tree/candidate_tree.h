@@ -1,6 +1,7 @@
-// Which triangles a ray may meet in its range, by boxes: how the judge gets through large scenes and many rays. Built
-// by halving, its boxes tested in double and widened by more than that rounds: it shares nothing with the builders
-// and traversals it helps to judge, and is itself tested against looking at every triangle. Feeds the judge.
+// Which triangles a ray may meet in its range, by boxes: how the judge gets through large scenes and many
+// rays. Built by halving, its boxes tested in double and widened by more than that rounds: it shares nothing
+// with the builders and traversals it helps to judge, and is itself tested against looking at every triangle.
+// Feeds the judge.
 #pragma once
 
 #include <algorithm>
@@ -21,9 +22,9 @@ class CandidateTree {
   // Triangles with a coordinate that is not finite are left out: nothing meets them.
   explicit CandidateTree(std::span<const GnTriangle> triangles);
 
-  // For a ray with finite origin and direction that is not zero: calls visit(triangle index), near ones first as far
-  // as boxes tell, for every triangle that the ray meets at some t with tmin <= t <= tmax, and for others. visit
-  // returns how far it still wants to look: a tmax, which only counts when it is less.
+  // For a ray with finite origin and direction that is not zero: calls visit(triangle index), near ones first
+  // as far as boxes tell, for every triangle that the ray meets at some t with tmin <= t <= tmax, and for
+  // others. visit returns how far it still wants to look: a tmax, which only counts when it is less.
   template <typename Visit>
   void visit(const GnRay& ray, double tmin, double tmax, Visit&& visit) const;
 
@@ -47,8 +48,8 @@ class CandidateTree {
   static constexpr std::size_t kStack = 64;  // halving 2^32 triangles takes 32 levels
 
   static Line line_of(const GnRay& ray);
-  // Where the line enters the box, or +inf where it misses it between tmin and tmax. Difference, reciprocal and product
-  // are off by 3 * 2^-53 of the distance together: 2^-50 covers it.
+  // Where the line enters the box, or +inf where it misses it between tmin and tmax. Difference, reciprocal
+  // and product are off by 3 * 2^-53 of the distance together: 2^-50 covers it.
   static double entry_of(const Line& line, const Node& node, double tmin, double tmax);
   void fill(std::uint32_t node, std::span<Item> items, std::uint32_t first);
 

@@ -28,7 +28,8 @@ constexpr std::uint64_t kBundle =
     32;  // rays judged together: they share the copying of triangles into blocks
 constexpr std::size_t kBadRaysKept = 16;
 
-// Spacing of floats at t: that of the smallest normal below it (devices may flush), that of the largest beyond it.
+// Spacing of floats at t: that of the smallest normal below it (devices may flush), that of the largest
+// beyond it.
 double float_ulp(double t) {
   const double magnitude = std::fabs(t);
   if (magnitude > std::numeric_limits<float>::max()) return 0x1p104;
@@ -74,7 +75,8 @@ bool is_safe(const Ray& ray, const ExactHit& hit, double tolerance) {
   return hit.t >= range.tmin + tolerance && hit.t <= range.tmax - tolerance;
 }
 
-// Whether a hit is nearer than the closest safe one so far, or as near with a lower number: triangles come in any order.
+// Whether a hit is nearer than the closest safe one so far, or as near with a lower number: triangles come in
+// any order.
 bool comes_first(const Ray& ray, const FoundHit& found, std::uint32_t primitive, const Findings& findings) {
   if (nearer(ray, found, findings.safe)) return true;
   return primitive < findings.safe_primitive && !nearer(ray, findings.safe, found);

@@ -37,8 +37,8 @@ struct OracleHit {
   double t = 0.0;                     // +inf: a miss
   std::uint32_t primitive = GN_NONE;  // lowest index among exactly equal t
 };
-// Closest hit with tmin <= t <= tmax and |t| <= FLT_MAX over all triangles. Rays with NaN, an infinite origin, or a direction whose
-// longest component is not between 2^-100 and 2^100 miss.
+// Closest hit with tmin <= t <= tmax and |t| <= FLT_MAX over all triangles. Rays with NaN, an infinite
+// origin, or a direction whose longest component is not between 2^-100 and 2^100 miss.
 [[nodiscard]] OracleHit oracle_closest(const Ray& ray, std::span<const Triangle> triangles);
 
 class CandidateTree;
@@ -52,12 +52,14 @@ struct OracleOptions {
   const CandidateTree* tree = nullptr;
 };
 
-// How many hits' t were wrong by how much, in steps of 1/16 ulp of the exact t as float; the last: by 8 ulp or more.
+// How many hits' t were wrong by how much, in steps of 1/16 ulp of the exact t as float; the last: by 8 ulp
+// or more.
 struct ErrorCounts {
   static constexpr std::size_t kPerUlp = 16;
   std::array<std::uint64_t, 8 * kPerUlp + 1> steps{};
   void add(double ulp);
-  // Within this error, in ulp, lies so large a share of all; the upper end of a step, +inf for the last, 0 for none.
+  // Within this error, in ulp, lies so large a share of all; the upper end of a step, +inf for the last, 0
+  // for none.
   [[nodiscard]] double quantile(double share) const;
 };
 

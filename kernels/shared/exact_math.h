@@ -1,6 +1,6 @@
-// The exact sign of a ray against a triangle's edge, and where it meets the triangle's plane, for float input, from double
-// arithmetic alone. Rarely reached: hit_math.h comes here only when floats cannot decide, or doubles not tell t to a
-// float's last bit. Devices without fp64 never compile it.
+// The exact sign of a ray against a triangle's edge, and where it meets the triangle's plane, for float input, from
+// double arithmetic alone. Rarely reached: hit_math.h comes here only when floats cannot decide, or doubles not tell t to
+// a float's last bit. Devices without fp64 never compile it.
 // Source: expansion arithmetic after Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997.
 #ifndef GNOMON_SHARED_EXACT_MATH_H
 #define GNOMON_SHARED_EXACT_MATH_H
@@ -54,8 +54,8 @@ GN_INLINE int gn_grow_by_determinant(double* e, int size, double sign, const gn_
   return size;
 }
 
-// det(d, a - o, b - o) = det(d, a, b) + det(d, b, o) + det(d, o, a), exactly: 36 exact terms summed as an expansion. e needs
-// room for 40.
+// det(d, a - o, b - o) = det(d, a, b) + det(d, b, o) + det(d, o, a), exactly: 36 exact terms summed as an expansion. e
+// needs room for 40.
 GN_INLINE int gn_exact_edge(double* e, const gn_f32* d, const gn_f32* o, const gn_f32* a, const gn_f32* b) {
   int size = gn_grow_by_determinant(e, 0, 1.0, d, a, b);
   size = gn_grow_by_determinant(e, size, 1.0, d, b, o);

@@ -1,4 +1,5 @@
-// Faults planted in kernels: what checks of hits and trees must see. Feeds the tests of `validate` and `stability`.
+// Faults planted in kernels: what checks of hits and trees must see. Feeds the tests of `validate` and
+// `stability`.
 #pragma once
 
 #include <catch2/catch.hpp>

@@ -1,5 +1,5 @@
-// The program on a device that fails: an error with a message and an exit status, nothing alive at its end, and no file
-// that is half written.
+// The program on a device that fails: an error with a message and an exit status, nothing alive at its end,
+// and no file that is half written.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
@@ -26,9 +26,10 @@ Report read_report(const std::string& file) {
   return report;
 }
 
-// Runs with ever later calls failing, about one in `every` of them, until none is reached; each time in a fresh folder,
-// where `file` is either not there or whole.
-void fail_calls(const std::vector<std::string>& arguments, const std::string& file, double every, std::size_t least_kinds) {
+// Runs with ever later calls failing, about one in `every` of them, until none is reached; each time in a
+// fresh folder, where `file` is either not there or whole.
+void fail_calls(const std::vector<std::string>& arguments, const std::string& file, double every,
+                std::size_t least_kinds) {
   std::uintmax_t whole = 0;
   {
     const Folder folder;
@@ -73,7 +74,8 @@ void fail_calls(const std::vector<std::string>& arguments, const std::string& fi
 }  // namespace
 
 TEST_CASE("trace --hits-out writes all hits or no file") {
-  fail_calls({"trace", "gen:random:300", "--count", "200", "--repeat", "1", "--hits-out"}, "hits.bin", 1.12, 6);
+  fail_calls({"trace", "gen:random:300", "--count", "200", "--repeat", "1", "--hits-out"}, "hits.bin", 1.12,
+             6);
 }
 
 TEST_CASE("stability --rows writes all rows or none") {
@@ -81,5 +83,6 @@ TEST_CASE("stability --rows writes all rows or none") {
 }
 
 TEST_CASE("render -o writes a whole picture or none") {
-  fail_calls({"render", "gen:random:300", "--width", "32", "--height", "24", "--samples", "1", "-o"}, "picture.png", 1.3, 4);
+  fail_calls({"render", "gen:random:300", "--width", "32", "--height", "24", "--samples", "1", "-o"},
+             "picture.png", 1.3, 4);
 }

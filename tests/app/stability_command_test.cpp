@@ -12,8 +12,8 @@ using program::run;
 
 namespace {
 
-const std::vector<const char*> kCounts{"rays", "hits", "lost", "false_hits", "wrong_primitive", "any_closest_disagree",
-                                       "invalid_rays"};
+const std::vector<const char*> kCounts{
+    "rays", "hits", "lost", "false_hits", "wrong_primitive", "any_closest_disagree", "invalid_rays"};
 
 std::vector<json> lines_of(const std::string& file) {
   std::istringstream text(program::read_text(file));
@@ -59,7 +59,9 @@ TEST_CASE("chosen cases run for every flavour and give one row each") {
 
 TEST_CASE("the same seed gives the same rows, another seed others") {
   const auto rows = [](const char* seed) {
-    return json::parse(run({"stability", "--only", "17", "--rays-per-case", "64", "--json", "--seed", seed}).out).at("rows");
+    return json::parse(
+               run({"stability", "--only", "17", "--rays-per-case", "64", "--json", "--seed", seed}).out)
+        .at("rows");
   };
   const json first = rows("5");
   CHECK(first == rows("5"));
@@ -67,8 +69,8 @@ TEST_CASE("the same seed gives the same rows, another seed others") {
 }
 
 TEST_CASE("a scene given is what case 18 runs on") {
-  const auto outcome =
-      run({"stability", "gen:random:300", "gen:terrain:500", "--only", "18", "--rays-per-case", "50", "--json"});
+  const auto outcome = run(
+      {"stability", "gen:random:300", "gen:terrain:500", "--only", "18", "--rays-per-case", "50", "--json"});
   REQUIRE(outcome.status == 0);
   CHECK(json::parse(outcome.out).at("rows")[0].at("triangles").get<int>() < 900);
 }

@@ -82,36 +82,36 @@ Live live() {
 using namespace fault_layer;
 
 // A call that answers with a status; `effect` follows success.
-#define STATUS_CALL(name, parameters, arguments, effect)                       \
-  extern "C" CL_API_ENTRY cl_int CL_API_CALL name parameters {                 \
-    static const auto forward = next<decltype(name)>(#name);                   \
-    if (fails(#name)) return CL_OUT_OF_RESOURCES;                              \
-    const cl_int answer = forward arguments;                                   \
-    if (answer == CL_SUCCESS) effect;                                          \
-    return answer;                                                             \
+#define STATUS_CALL(name, parameters, arguments, effect)       \
+  extern "C" CL_API_ENTRY cl_int CL_API_CALL name parameters { \
+    static const auto forward = next<decltype(name)>(#name);   \
+    if (fails(#name)) return CL_OUT_OF_RESOURCES;              \
+    const cl_int answer = forward arguments;                   \
+    if (answer == CL_SUCCESS) effect;                          \
+    return answer;                                             \
   }
 
 // A call that answers with an object, and with a status through `status`.
-#define CREATE_CALL(type, name, parameters, arguments, effect)                 \
-  extern "C" CL_API_ENTRY type CL_API_CALL name parameters {                   \
-    static const auto forward = next<decltype(name)>(#name);                   \
-    if (fails(#name)) {                                                        \
-      if (status != nullptr) *status = CL_OUT_OF_RESOURCES;                    \
-      return nullptr;                                                          \
-    }                                                                          \
-    type answer = forward arguments;                                     \
-    if (answer != nullptr) effect;                                             \
-    return answer;                                                             \
+#define CREATE_CALL(type, name, parameters, arguments, effect) \
+  extern "C" CL_API_ENTRY type CL_API_CALL name parameters {   \
+    static const auto forward = next<decltype(name)>(#name);   \
+    if (fails(#name)) {                                        \
+      if (status != nullptr) *status = CL_OUT_OF_RESOURCES;    \
+      return nullptr;                                          \
+    }                                                          \
+    type answer = forward arguments;                           \
+    if (answer != nullptr) effect;                             \
+    return answer;                                             \
   }
 
-#define COUNTED_OBJECT(type, kind, retain, release)                            \
-  STATUS_CALL(retain, (type object), (object), ++alive[kind])                  \
-  extern "C" CL_API_ENTRY cl_int CL_API_CALL release(type object) {            \
-    static const auto forward = next<decltype(release)>(#release);             \
-    const bool as_told = fails(#release);                                      \
-    const cl_int answer = forward(object);                                     \
-    if (answer == CL_SUCCESS) --alive[kind];                                   \
-    return as_told ? CL_OUT_OF_RESOURCES : answer;                             \
+#define COUNTED_OBJECT(type, kind, retain, release)                 \
+  STATUS_CALL(retain, (type object), (object), ++alive[kind])       \
+  extern "C" CL_API_ENTRY cl_int CL_API_CALL release(type object) { \
+    static const auto forward = next<decltype(release)>(#release);  \
+    const bool as_told = fails(#release);                           \
+    const cl_int answer = forward(object);                          \
+    if (answer == CL_SUCCESS) --alive[kind];                        \
+    return as_told ? CL_OUT_OF_RESOURCES : answer;                  \
   }
 
 #define COUNT_EVENT(event) alive[kEvent] += (event) != nullptr && *(event) != nullptr ? 1 : 0
@@ -130,7 +130,8 @@ CREATE_CALL(cl_context, clCreateContext,
 CREATE_CALL(cl_command_queue, clCreateCommandQueue,
             (cl_context context, cl_device_id device, cl_command_queue_properties properties, cl_int* status),
             (context, device, properties, status), ++alive[kQueue])
-CREATE_CALL(cl_mem, clCreateBuffer, (cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* status),
+CREATE_CALL(cl_mem, clCreateBuffer,
+            (cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* status),
             (context, flags, size, host, status), ++alive[kBuffer])
 CREATE_CALL(cl_program, clCreateProgramWithSource,
             (cl_context context, cl_uint count, const char** strings, const size_t* lengths, cl_int* status),
@@ -139,24 +140,26 @@ CREATE_CALL(cl_program, clCreateProgramWithBinary,
             (cl_context context, cl_uint count, const cl_device_id* devices, const size_t* lengths,
              const unsigned char** binaries, cl_int* each, cl_int* status),
             (context, count, devices, lengths, binaries, each, status), ++alive[kProgram])
-CREATE_CALL(cl_kernel, clCreateKernel, (cl_program program, const char* name, cl_int* status), (program, name, status),
-            ++alive[kKernel])
+CREATE_CALL(cl_kernel, clCreateKernel, (cl_program program, const char* name, cl_int* status),
+            (program, name, status), ++alive[kKernel])
 CREATE_CALL(void*, clEnqueueMapBuffer,
-            (cl_command_queue queue, cl_mem buffer, cl_bool blocking, cl_map_flags flags, size_t offset, size_t size,
-             cl_uint waits, const cl_event* wait_for, cl_event* event, cl_int* status),
-            (queue, buffer, blocking, flags, offset, size, waits, wait_for, event, status), COUNT_EVENT(event))
+            (cl_command_queue queue, cl_mem buffer, cl_bool blocking, cl_map_flags flags, size_t offset,
+             size_t size, cl_uint waits, const cl_event* wait_for, cl_event* event, cl_int* status),
+            (queue, buffer, blocking, flags, offset, size, waits, wait_for, event, status),
+            COUNT_EVENT(event))
 
 STATUS_CALL(clEnqueueUnmapMemObject,
             (cl_command_queue queue, cl_mem buffer, void* pointer, cl_uint waits, const cl_event* wait_for,
              cl_event* event),
             (queue, buffer, pointer, waits, wait_for, event), COUNT_EVENT(event))
 STATUS_CALL(clEnqueueFillBuffer,
-            (cl_command_queue queue, cl_mem buffer, const void* pattern, size_t pattern_size, size_t offset, size_t size,
-             cl_uint waits, const cl_event* wait_for, cl_event* event),
+            (cl_command_queue queue, cl_mem buffer, const void* pattern, size_t pattern_size, size_t offset,
+             size_t size, cl_uint waits, const cl_event* wait_for, cl_event* event),
             (queue, buffer, pattern, pattern_size, offset, size, waits, wait_for, event), COUNT_EVENT(event))
 STATUS_CALL(clEnqueueNDRangeKernel,
-            (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset, const size_t* global,
-             const size_t* local, cl_uint waits, const cl_event* wait_for, cl_event* event),
+            (cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
+             const size_t* global, const size_t* local, cl_uint waits, const cl_event* wait_for,
+             cl_event* event),
             (queue, kernel, dimensions, offset, global, local, waits, wait_for, event), COUNT_EVENT(event))
 STATUS_CALL(clWaitForEvents, (cl_uint count, const cl_event* events), (count, events), {})
 STATUS_CALL(clSetKernelArg, (cl_kernel kernel, cl_uint index, size_t size, const void* value),
@@ -167,14 +170,16 @@ STATUS_CALL(clBuildProgram,
             (cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
              void(CL_CALLBACK* notify)(cl_program, void*), void* data),
             (program, count, devices, options, notify, data), {})
-STATUS_CALL(clGetPlatformIDs, (cl_uint count, cl_platform_id* platforms, cl_uint* found), (count, platforms, found), {})
+STATUS_CALL(clGetPlatformIDs, (cl_uint count, cl_platform_id* platforms, cl_uint* found),
+            (count, platforms, found), {})
 STATUS_CALL(clGetDeviceIDs,
-            (cl_platform_id platform, cl_device_type type, cl_uint count, cl_device_id* devices, cl_uint* found),
+            (cl_platform_id platform, cl_device_type type, cl_uint count, cl_device_id* devices,
+             cl_uint* found),
             (platform, type, count, devices, found), {})
 
 // Calls that ask for facts all look alike.
-#define INFO_CALL(name, type, what)                                                                              \
-  STATUS_CALL(name, (type object, what which, size_t size, void* value, size_t* needed),                         \
+#define INFO_CALL(name, type, what)                                                      \
+  STATUS_CALL(name, (type object, what which, size_t size, void* value, size_t* needed), \
               (object, which, size, value, needed), {})
 INFO_CALL(clGetPlatformInfo, cl_platform_id, cl_platform_info)
 INFO_CALL(clGetDeviceInfo, cl_device_id, cl_device_info)

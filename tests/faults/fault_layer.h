@@ -1,6 +1,7 @@
-// Between gnomon and the OpenCL loader, in tests: makes any one call fail, and counts the objects that are alive. Linked
-// into a test program it takes the place of the loader's functions there; as a library that is preloaded, in any
-// program (then GNOMON_FAULT_AT names the call, and GNOMON_FAULT_REPORT a file for what came of it).
+// Between gnomon and the OpenCL loader, in tests: makes any one call fail, and counts the objects that are
+// alive. Linked into a test program it takes the place of the loader's functions there; as a library that is
+// preloaded, in any program (then GNOMON_FAULT_AT names the call, and GNOMON_FAULT_REPORT a file for what
+// came of it).
 #pragma once
 
 #include <array>
@@ -9,8 +10,8 @@
 
 namespace fault_layer {
 
-// The n-th call from now on fails, once, with CL_OUT_OF_RESOURCES and without reaching the driver; a release is done
-// all the same. 0: none.
+// The n-th call from now on fails, once, with CL_OUT_OF_RESOURCES and without reaching the driver; a release
+// is done all the same. 0: none.
 void arm(std::uint64_t nth);
 
 // The call that was made to fail since arm(); empty: none was reached.

@@ -1,5 +1,6 @@
-// Every OpenCL call that building, collapsing and tracing make, made to fail once: the caller gets an error, or the
-// right answer where the call could be done without; nothing leaks, and the next run is as good as new.
+// Every OpenCL call that building, collapsing and tracing make, made to fail once: the caller gets an error,
+// or the right answer where the call could be done without; nothing leaks, and the next run is as good as
+// new.
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <functional>
@@ -23,18 +24,13 @@ void add(Answer& answer, const std::vector<T>& values) {
   answer.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
 }
 
-// What may fail without an error reaching the caller: times, what the kernels' cache can do without, another way to get
-// memory, releases, and drivers and devices that do not answer while others do.
+// What may fail without an error reaching the caller: times, what the kernels' cache can do without, another
+// way to get memory, releases, and drivers and devices that do not answer while others do.
 bool can_be_done_without(const std::string& call) {
-  static const std::set<std::string> calls{"clGetEventProfilingInfo",
-                                           "clGetProgramInfo",
-                                           "clCreateProgramWithBinary",
-                                           "clBuildProgram",
-                                           "clGetProgramBuildInfo",
-                                           "clCreateBuffer",
-                                           "clSetMemObjectDestructorCallback",
-                                           "clGetPlatformIDs",
-                                           "clGetDeviceIDs"};
+  static const std::set<std::string> calls{
+      "clGetEventProfilingInfo", "clGetProgramInfo", "clCreateProgramWithBinary",        "clBuildProgram",
+      "clGetProgramBuildInfo",   "clCreateBuffer",   "clSetMemObjectDestructorCallback", "clGetPlatformIDs",
+      "clGetDeviceIDs"};
   return calls.contains(call) || call.starts_with("clRelease");
 }
 
@@ -44,7 +40,8 @@ struct Outcomes {
   std::map<std::string, int> unharmed;
 };
 
-// Runs with the first call failing, the second, and so on until a run makes no more calls. `least`: so many at least.
+// Runs with the first call failing, the second, and so on until a run makes no more calls. `least`: so many
+// at least.
 Outcomes fail_each(const std::function<Answer()>& run, std::uint64_t least) {
   const Answer expected = run();
   const fault_layer::Live before = fault_layer::live();
@@ -119,8 +116,8 @@ TEST_CASE("the layer counts what is alive and fails the call it is told to") {
     static_cast<void>(shared().create_buffer("fine", 100));  // the release of this one fails
     REQUIRE(fault_layer::failed() == "clReleaseMemObject");
     fault_layer::arm(1);
-    REQUIRE_THROWS_WITH(shared().create_buffer("broken", 100), Catch::Contains("clCreateBuffer") &&
-                                                                   Catch::Contains("broken"));
+    REQUIRE_THROWS_WITH(shared().create_buffer("broken", 100),
+                        Catch::Contains("clCreateBuffer") && Catch::Contains("broken"));
     fault_layer::arm(0);
   }
   REQUIRE(fault_layer::live() == before);
@@ -133,8 +130,9 @@ TEST_CASE("devices, a context of one's own and its first kernel") {
         return context.device().name + std::to_string(context.device().loop_limit);
       },
       30);
-  for (const char* call : {"clGetDeviceInfo", "clCreateContext", "clCreateCommandQueue", "clCreateKernel",
-                           "clEnqueueNDRangeKernel", "clWaitForEvents", "clEnqueueMapBuffer", "clSetKernelArg"}) {
+  for (const char* call :
+       {"clGetDeviceInfo", "clCreateContext", "clCreateCommandQueue", "clCreateKernel",
+        "clEnqueueNDRangeKernel", "clWaitForEvents", "clEnqueueMapBuffer", "clSetKernelArg"}) {
     CAPTURE(call);
     REQUIRE(outcomes.errors.contains(call));
   }
@@ -215,7 +213,8 @@ TEST_CASE("collapsing and tracing by the wide tree") {
   const Outcomes outcomes = fail_each(
       [&] {
         const DeviceWideBvh wide = collapse_device(shared(), tree);
-        return tree_hash(download_wide(shared(), wide)) + trace_all(shared(), Tracer(shared(), tree, options));
+        return tree_hash(download_wide(shared(), wide)) +
+               trace_all(shared(), Tracer(shared(), tree, options));
       },
       80);
   REQUIRE(outcomes.errors.contains("clEnqueueNDRangeKernel"));
@@ -241,7 +240,8 @@ TEST_CASE("enqueueing on the caller's buffers") {
 }
 
 TEST_CASE("a forest, its top level and its tracer") {
-  const std::vector<LocalTree> trees{{InfluenceArea::omni({5, 5, 5}, 4.0)}, {InfluenceArea::omni({90, 5, 5}, 1.0)}};
+  const std::vector<LocalTree> trees{{InfluenceArea::omni({5, 5, 5}, 4.0)},
+                                     {InfluenceArea::omni({90, 5, 5}, 1.0)}};
   const Outcomes outcomes = fail_each(
       [&] {
         const DeviceForest forest = build_forest(shared(), triangles(), trees);

@@ -1,5 +1,5 @@
-// The catalogue's tools: rays hit what they are aimed at, expectations are held against answers, and a long run gives
-// the same whatever its chunks.
+// The catalogue's tools: rays hit what they are aimed at, expectations are held against answers, and a long
+// run gives the same whatever its chunks.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -78,7 +78,8 @@ TEST_CASE("flat triangles have no area, slivers have some") {
 
 TEST_CASE("an expectation that is not met is a fault, whatever the oracle says") {
   const Triangle wall = triangle_of({-1, -1, 3}, {3, -1, 3}, {-1, 3, 3});
-  Specimen specimen{{wall, wall}, {ray_of({0, 0, 0}, {0, 0, 1}), ray_of({0, 0, 0}, {0, 0, -1})}, Expect::kOracle};
+  Specimen specimen{
+      {wall, wall}, {ray_of({0, 0, 0}, {0, 0, 1}), ray_of({0, 0, 0}, {0, 0, -1})}, Expect::kOracle};
   const Hit hit{3, 0.25F, 0.25F, 0};
   REQUIRE(verdict_of(specimen, {hit, kMiss}).ok());
   REQUIRE_FALSE(verdict_of(specimen, {kMiss, kMiss}).ok());
@@ -93,7 +94,8 @@ TEST_CASE("an expectation that is not met is a fault, whatever the oracle says")
   REQUIRE(verdict_of(specimen, {second, kMiss}).ok());
   specimen.in_order = true;
   REQUIRE_FALSE(verdict_of(specimen, {second, kMiss}).ok());
-  const Hit off{std::nextafter(3.0F, 4.0F), 0.25F, 0.25F, 0};  // within the oracle's tolerance, not the case's
+  const Hit off{std::nextafter(3.0F, 4.0F), 0.25F, 0.25F,
+                0};  // within the oracle's tolerance, not the case's
   REQUIRE_FALSE(verdict_of(specimen, {off, kMiss}).ok());
 }
 
@@ -139,7 +141,8 @@ TEST_CASE("a long run stops where it is told, and refuses to be none") {
   options.chunk = 100;
   options.scenes = {generate_scene("random", 100, 1)};
   int calls = 0;
-  const SoakReport report = soak(test::context(), options, [&](std::string_view, double) { return ++calls < 3; });
+  const SoakReport report =
+      soak(test::context(), options, [&](std::string_view, double) { return ++calls < 3; });
   REQUIRE(report.stopped);
   REQUIRE(report.total().rays == 300);
   options.rays = 0;

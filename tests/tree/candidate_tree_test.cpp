@@ -1,5 +1,5 @@
-// The judge's tree against looking at every triangle: no meeting is missed, and the judge says the same of right and
-// of wrong answers whichever way it looks.
+// The judge's tree against looking at every triangle: no meeting is missed, and the judge says the same of
+// right and of wrong answers whichever way it looks.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -18,7 +18,8 @@ namespace {
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // Random rays and rays at corners and edges, some along axes, with ranges and lengths of all kinds.
-std::vector<GnRay> rays_for(const std::vector<GnTriangle>& triangles, std::uint32_t count, std::uint32_t seed) {
+std::vector<GnRay> rays_for(const std::vector<GnTriangle>& triangles, std::uint32_t count,
+                            std::uint32_t seed) {
   Random random(seed);
   std::vector<GnRay> rays;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -69,7 +70,8 @@ std::vector<std::vector<GnTriangle>> scenes() {
 }
 
 std::vector<std::uint64_t> all_of(const OracleReport& r) {
-  return {r.rays_judged, r.hits, r.lost, r.false_hits, r.wrong_primitive, r.ties, r.any_closest_disagree, r.range_ambiguous};
+  return {r.rays_judged,          r.hits,           r.lost, r.false_hits, r.wrong_primitive, r.ties,
+          r.any_closest_disagree, r.range_ambiguous};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // sees where none are, or gets wrong. One JSON row per case and tracer on stdout. Usage: stability_peer
 // [RAYS-PER-CASE [SEED]]
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -21,9 +22,19 @@ using Json = nlohmann::ordered_json;
 // Embree's t are rounded more often than ours: what it sees within this is no fault.
 constexpr double kPeerToleranceUlp = 1000.0;
 
+// Coordinates and directions beyond this are not for Embree, which asserts it.
+constexpr float kPeerLargest = 1.8e18F;
+
+bool embree_takes(const GnRay& ray) {
+  const auto takes = [](float x) { return std::fabs(x) < kPeerLargest; };
+  return std::all_of(ray.origin, ray.origin + 3, takes) &&
+         std::all_of(ray.direction, ray.direction + 3, takes);
+}
+
 // What all of them can be asked: no refused rays, and ranges that begin at the origin or later.
 Specimen for_all(Specimen specimen) {
   for (GnRay& ray : specimen.rays) ray.tmin = std::max(ray.tmin, 0.0F);
+  std::erase_if(specimen.rays, [](const GnRay& ray) { return !embree_takes(ray); });
   return specimen;
 }
 
@@ -87,6 +98,7 @@ int main(int argc, char** argv) {
       for (const Specimen& given : gnomon::stability::specimens_of(context, info.number, options)) {
         if (given.invalid > 0) continue;  // Embree does not say what it refuses
         const Specimen specimen = for_all(given);
+        if (specimen.rays.empty()) continue;
         by_gnomon(context, specimen, ours);
         by_embree(specimen, false, plain);
         by_embree(specimen, true, robust);

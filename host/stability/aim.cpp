@@ -54,6 +54,10 @@ Ray through(const Point& target, float reach, SteadyRandom& random) {
     origin[k] = static_cast<float>(start * bit);
     direction[k] = static_cast<float>(place - start * bit);
   }
+  if (direction == Point{0, 0, 0}) {  // a reach of less than the target's last bits
+    direction[1] = 0x1p-20F * std::max(std::fabs(target[1]), 1.0F);
+    origin[1] = target[1] - direction[1];
+  }
   return ray_of(origin, direction);
 }
 

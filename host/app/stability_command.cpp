@@ -138,6 +138,8 @@ int run_soak(const Options& options, Console& console) {
   row["stopped"] = report.stopped;
   row["seconds"] = report.seconds;
   row.update(to_json(total, exact));
+  for (const char* key : {"scene", "scene_hash", "builder", "offset"})
+    row.erase(key);  // each part has its own
   row["t_error_p99_of_parts"] = spread_of_p99(report);
   row["parts"] = Json::array();
   for (const stability::SoakPart& part : report.parts) row["parts"].push_back(to_json(part, exact));

@@ -153,9 +153,11 @@ static inline void test_triangle(GnPacket* p, __global const float8* rays, __glo
     const float16 nearest = t - error, farthest = t + error;
     const uint beyond = lanes_above16(p->tmin[g], farthest) | lanes_above16(nearest, p->tmax[g]) |
                         lanes_above16(nearest, p->farthest[g]);
+    // Not where something overflowed: infinities less themselves and NaN compare with nothing.
+    const uint known = lanes_above16((float16)INFINITY, farthest - nearest);
     const uint within = lanes_not_above16(p->tmin[g], nearest) & lanes_not_above16(farthest, p->tmax[g]);
-    const uint take = met & inside & within & lanes_above16(p->nearest[g], farthest);
-    uint rest = met & ~(inside & beyond) & ~take;
+    const uint take = met & inside & known & within & lanes_above16(p->nearest[g], farthest);
+    uint rest = met & ~(inside & known & beyond) & ~take;
     if (take != 0u) {
       const int16 lanes = lanes_of_bits16(take);
       p->nearest[g] = lanes ? nearest : p->nearest[g];
@@ -166,7 +168,7 @@ static inline void test_triangle(GnPacket* p, __global const float8* rays, __glo
     }
     while (rest != 0u) {
       const uint lane = lowest_bit(rest);
-      const uint sure = (inside >> lane) & (lanes_not_above16(nearest, farthest) >> lane) & 1u;
+      const uint sure = (inside >> lane) & (known >> lane) & 1u;
       decide(p, rays, blocks, 16u * g + lane, place, sure ? 1 : -1);
       rest &= rest - 1u;
     }

@@ -54,7 +54,6 @@ typedef struct GnPacket {
 // Error bounds of packet_leaf.h count on these.
 #define GN_SHEAR_LIMIT 1.25f
 #define GN_PENCIL_WIDTH 0.125f   // half the range of shears
-#define GN_LEAST_DIRECTION 1e-30f
 #define GN_PACKET_FAR 1e18f  // of origins and the apex: products of edges and distances do not overflow
 #define GN_PACKET_UNDERFLOW 1e-30f
 
@@ -97,11 +96,14 @@ static inline int take_rays(GnPacket* p, __global const float8* rays, float16 di
     p->tmin[g] = vload16(g, lanes[3]);
     p->tmax[g] = vload16(g, lanes[7]);
     fit &= all(p->tmin[g] >= 0.0f) && all(p->tmax[g] >= p->tmin[g]);
+    p->tmax[g] = GN_MIN8(p->tmax[g], (float16)FLT_MAX);  // gn_finite_tmax
     for (k = 0u; k < 3u; ++k) {
       p->origin[k][g] = vload16(g, lanes[k]);
       directions[k][g] = vload16(g, lanes[4u + k]);
       p->inverse[k][g] = 1.0f / directions[k][g];
-      fit &= all(fabs(p->origin[k][g]) <= GN_PACKET_FAR) && all(fabs(directions[k][g]) <= FLT_MAX);
+      // Of denormal components the reciprocal is not known (gn_slab_inverse).
+      fit &= all(fabs(p->origin[k][g]) <= GN_PACKET_FAR) && all(fabs(directions[k][g]) <= GN_LONGEST_DIRECTION) &&
+             all((directions[k][g] == 0.0f) | (fabs(directions[k][g]) >= FLT_MIN));
     }
   }
   return fit;
@@ -170,7 +172,7 @@ static inline int find_shears(GnPacket* p, const float16 directions[3][GN_GROUPS
   p->ky = p->kx == 2u ? 0u : p->kx + 1u;
   for (g = 0u; g < p->groups; ++g) {
     const float16 along = directions[p->kz][g];
-    if (!all(fabs(along) >= GN_LEAST_DIRECTION)) return 0;
+    if (!all(fabs(along) >= GN_SHORTEST_DIRECTION)) return 0;
     shear_x[g] = directions[p->kx][g] / along;
     shear_y[g] = directions[p->ky][g] / along;
   }

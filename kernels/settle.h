@@ -20,6 +20,19 @@ static inline double8 of_axis(long8 is_y, long8 is_z, double8 x, double8 y, doub
   return is_z ? z : is_y ? y : x;
 }
 
+// True wherever gn_mean_is_doubtful is: a permanent is no more than twice the direction's sum times the square of the
+// largest corner. NaN counts as doubt.
+static inline long8 mean_may_be_doubtful(const double8* r, double8 direction, long8 is_y, long8 is_z,
+                                         double8 distance) {
+  const double8 a = of_axis(is_y, is_z, r[0], r[1], r[2]), b = of_axis(is_y, is_z, r[3], r[4], r[5]);
+  const double8 c = of_axis(is_y, is_z, r[6], r[7], r[8]);
+  const double8 spread = GN_MAX8(GN_MAX8(a, b), c) - GN_MIN8(GN_MIN8(a, b), c);
+  double8 most = fabs(r[0]);
+  uint k;
+  for (k = 1u; k < 9u; ++k) most = GN_MAX8(fabs(r[k]), most);
+  return !(12.1 * GN_WIDE_EPSILON * direction * most * most * spread <= 3.7252903e-09 * fabs(distance));
+}
+
 // det(d, a, b) as gn_wide_determinant sums it.
 static inline double8 determinant_of_eight(const double8* d, const double8* a, const double8* b) {
   double8 sum = (double8)(0.0);
@@ -28,10 +41,24 @@ static inline double8 determinant_of_eight(const double8* d, const double8* a, c
   return sum + (a[0] * b[1] - a[1] * b[0]) * d[2];
 }
 
+#endif
+
+static inline GnHit settle_one(const GnFound* found, uint i, __global const GnTriangleBlock* blocks,
+                               __global const float8* rays) {
+  const GnRay ray = load_ray(rays, found->ray[i]);
+  const GnRayFrame frame = gn_ray_frame(&ray);
+  GnHit hit;
+  resolve(&frame, blocks + (found->place[i] >> 3), found->place[i] & 7u, 1, &hit);
+  return hit;
+}
+
+#if GN_HAS_FP64
+
 // Works out the hits in `found` and writes them.
 static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangleBlock* blocks,
-                                                   __global const float8* rays, __global float4* hits) {
+                                        __global const float8* rays, __global float4* hits) {
   float corner[72], line[48];
+  long doubtful[8];
   double8 r[9], d[3];
   uint i, k;
   for (i = 0u; i < 8u; ++i) {
@@ -76,13 +103,15 @@ static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangl
     distance = distance + w0 * of_axis(y_over_x, is_z, r[0], r[1], r[2]);
     distance = distance + w1 * of_axis(y_over_x, is_z, r[3], r[4], r[5]);
     distance = distance + w2 * of_axis(y_over_x, is_z, r[6], r[7], r[8]);
+    vstore8(flat | mean_may_be_doubtful(r, ax + ay + az, y_over_x, is_z, distance), 0, doubtful);
     vstore8(convert_float8(distance / (sum * of_axis(y_over_x, is_z, d[0], d[1], d[2]))), 0, corner);
     vstore8(convert_float8(w1 / sum), 1, corner);
     vstore8(convert_float8(w2 / sum), 2, corner);
   }
   for (i = 0u; i < found->count; ++i) {
     const uint primitive = blocks[found->place[i] >> 3].primitives[found->place[i] & 7u];
-    hits[found->ray[i]] = (float4)(corner[i], corner[8u + i], corner[16u + i], as_float(primitive));
+    const float t = doubtful[i] != 0 ? settle_one(found, i, blocks, rays).t : corner[i];
+    hits[found->ray[i]] = (float4)(t, corner[8u + i], corner[16u + i], as_float(primitive));
   }
   found->count = 0u;
 }
@@ -90,13 +119,10 @@ static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangl
 #else
 
 static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangleBlock* blocks,
-                                                   __global const float8* rays, __global float4* hits) {
+                                        __global const float8* rays, __global float4* hits) {
   uint i;
   for (i = 0u; i < found->count; ++i) {
-    const GnRay ray = load_ray(rays, found->ray[i]);
-    const GnRayFrame frame = gn_ray_frame(&ray);
-    GnHit hit;
-    resolve(&frame, blocks + (found->place[i] >> 3), found->place[i] & 7u, 1, &hit);
+    const GnHit hit = settle_one(found, i, blocks, rays);
     hits[found->ray[i]] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
   }
   found->count = 0u;

@@ -56,7 +56,7 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const GnT
                             __global const float8* rays, __global float4* hits, volatile __global uint* invalid_rays,
                             __global GnRayCounters* counters, uint count) {
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
-  const uint end = min(count, index + GN_RAYS_PER_ITEM);
+  const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
   const float size = size_of_root(nodes);
   GnPacket packet;
   GnFound found;
@@ -69,7 +69,7 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const GnT
       store_packet_counters(&packet, counters);
       index += 16u * groups;
     } else {
-      const uint stop = min(end, index + 16u);
+      const uint stop = gn_run_end(index, end, 16u);
       for (; index < stop; ++index) trace_one_closest(nodes, blocks, rays, hits, invalid_rays, counters, index);
     }
   }
@@ -81,7 +81,7 @@ __kernel void trace_any(__global const GnWideNode* nodes, __global const GnTrian
                         __global const float8* rays, __global uint* occluded, volatile __global uint* invalid_rays,
                         __global GnRayCounters* counters, uint count) {
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
-  const uint end = min(count, index + GN_RAYS_PER_ITEM);
+  const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
   const float size = size_of_root(nodes);
   GnPacket packet;
   while (index < end) {
@@ -93,7 +93,7 @@ __kernel void trace_any(__global const GnWideNode* nodes, __global const GnTrian
       store_packet_counters(&packet, counters);
       index += 16u * groups;
     } else {
-      const uint stop = min(end, index + 16u);
+      const uint stop = gn_run_end(index, end, 16u);
       for (; index < stop; ++index) trace_one_any(nodes, blocks, rays, occluded, invalid_rays, counters, index);
     }
   }

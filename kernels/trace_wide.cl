@@ -13,7 +13,7 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const GnT
                             __global const float8* rays, __global float4* hits, volatile __global uint* invalid_rays,
                             __global GnRayCounters* counters, uint count) {
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
-  const uint end = min(count, index + GN_RAYS_PER_ITEM);
+  const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
   for (; index < end; ++index) trace_one_closest(nodes, blocks, rays, hits, invalid_rays, counters, index);
 }
 
@@ -22,6 +22,6 @@ __kernel void trace_any(__global const GnWideNode* nodes, __global const GnTrian
                         __global const float8* rays, __global uint* occluded, volatile __global uint* invalid_rays,
                         __global GnRayCounters* counters, uint count) {
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
-  const uint end = min(count, index + GN_RAYS_PER_ITEM);
+  const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
   for (; index < end; ++index) trace_one_any(nodes, blocks, rays, occluded, invalid_rays, counters, index);
 }

@@ -109,9 +109,11 @@ static GN_OUT_OF_LINE void test_exactly(GnWideWalk* walk, const GnWideRay* ray, 
 // A triangle that is met for certain, by floats between nearest and farthest.
 static inline void test_met(GnWideWalk* walk, const GnWideRay* ray, __global const GnTriangleBlock* block, uint lane,
                             float nearest, float farthest) {
-  if (farthest < ray->tmin || nearest > ray->tmax) return;
-  if (walk->found && nearest > walk->farthest) return;
-  if (nearest >= ray->tmin && farthest <= ray->tmax && (!walk->found || farthest < walk->nearest)) {
+  // False where something overflowed: infinities less themselves and NaN compare with nothing.
+  const int known = farthest - nearest < INFINITY;
+  if (known && (farthest < ray->tmin || nearest > ray->tmax)) return;
+  if (known && walk->found && nearest > walk->farthest) return;
+  if (known && nearest >= ray->tmin && farthest <= ray->tmax && (!walk->found || farthest < walk->nearest)) {
     walk->found = 1u;
     walk->pending = 1u;
     walk->pending_block = block;
@@ -121,7 +123,7 @@ static inline void test_met(GnWideWalk* walk, const GnWideRay* ray, __global con
     walk->limit = limit_for(farthest);
   } else {
     // An edge function that overflowed to NaN hides from the largest and the smallest: nothing is certain then.
-    test_exactly(walk, ray, block, lane, nearest <= farthest ? 1 : -1);
+    test_exactly(walk, ray, block, lane, known ? 1 : -1);
   }
 }
 

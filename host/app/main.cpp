@@ -25,7 +25,7 @@ const char* const kFooter =
     "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png\n"
     "\n"
     "Exit status: 0 ok, 1 failure, 2 wrong usage, 3 no device, 4 bad scene or ray file, 5 out of memory,\n"
-    "6 validation found a mismatch, 130 interrupted.\n"
+    "6 validation or a stability case failed, 130 interrupted.\n"
     "\n"
     "Environment: GNOMON_DEVICE (as --device), XDG_CACHE_HOME (compiled kernels go to its folder gnomon),\n"
     "GNOMON_KERNELS (a folder to read kernel sources from), NO_COLOR.";
@@ -87,6 +87,7 @@ int run(int argc, char** argv) {
   add_trace_command(program, output, action);
   add_validate_command(program, output, action);
   add_render_command(program, output, action);
+  add_stability_command(program, output, action);
   add_reproduce_command(program, output, action);
   program.footer(kFooter);
   try {

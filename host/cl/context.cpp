@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "gnomon/base/error.h"
 #include "gnomon/cl/check.h"
@@ -18,19 +19,29 @@ class Mapping {
  public:
   Mapping(cl_command_queue queue, const Buffer& buffer, cl_map_flags flags, std::size_t offset,
           std::size_t bytes)
-      : queue_(queue), mem_(buffer.mem.get()) {
+      : queue_(queue), buffer_(buffer) {
     cl_int status = CL_SUCCESS;
-    pointer_ = clEnqueueMapBuffer(queue, mem_, CL_TRUE, flags, offset, bytes, 0, nullptr, nullptr, &status);
+    pointer_ = clEnqueueMapBuffer(queue, buffer.mem.get(), CL_TRUE, flags, offset, bytes, 0, nullptr, nullptr,
+                                  &status);
     check(status, "clEnqueueMapBuffer", buffer.name);
   }
   Mapping(const Mapping&) = delete;
   Mapping& operator=(const Mapping&) = delete;
-  ~Mapping() { clEnqueueUnmapMemObject(queue_, mem_, pointer_, 0, nullptr, nullptr); }
+  ~Mapping() {
+    if (pointer_ != nullptr) static_cast<void>(unmap());
+  }
+  // Undoes it now. Throws Error{kDevice} where that fails: what was written may never arrive.
+  void undo() { check(unmap(), "clEnqueueUnmapMemObject", buffer_.name); }
   [[nodiscard]] void* pointer() const { return pointer_; }
 
  private:
+  cl_int unmap() {
+    void* const pointer = std::exchange(pointer_, nullptr);
+    return clEnqueueUnmapMemObject(queue_, buffer_.mem.get(), pointer, 0, nullptr, nullptr);
+  }
+
   cl_command_queue queue_;
-  cl_mem mem_;
+  const Buffer& buffer_;
   void* pointer_ = nullptr;
 };
 
@@ -108,15 +119,17 @@ Buffer Context::create_buffer(const std::string& name, std::size_t bytes) const 
 void Context::upload(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t offset) const {
   if (bytes.empty()) return;
   require_range(buffer, offset, bytes.size());
-  const Mapping mapping(queue_.get(), buffer, CL_MAP_WRITE_INVALIDATE_REGION, offset, bytes.size());
+  Mapping mapping(queue_.get(), buffer, CL_MAP_WRITE_INVALIDATE_REGION, offset, bytes.size());
   std::memcpy(mapping.pointer(), bytes.data(), bytes.size());
+  mapping.undo();
 }
 
 void Context::download(const Buffer& buffer, std::span<std::byte> bytes, std::size_t offset) const {
   if (bytes.empty()) return;
   require_range(buffer, offset, bytes.size());
-  const Mapping mapping(queue_.get(), buffer, CL_MAP_READ, offset, bytes.size());
+  Mapping mapping(queue_.get(), buffer, CL_MAP_READ, offset, bytes.size());
   std::memcpy(bytes.data(), mapping.pointer(), bytes.size());
+  mapping.undo();
 }
 
 void Context::fill(const Buffer& buffer, std::uint32_t word) const {

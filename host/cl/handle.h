@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "gnomon/cl/check.h"
 #include "gnomon/cl/opencl.h"
 
 namespace gnomon::cl {
@@ -60,9 +61,10 @@ class Handle {
     if (object_ != nullptr) HandleTraits<T>::release(object_);
   }
 
-  // Shares an object somebody else owns: adds a reference of our own.
+  // Shares an object somebody else owns: adds a reference of our own. Throws Error{kDevice} where that fails:
+  // without it our release would take the owner's.
   [[nodiscard]] static Handle share(T object) {
-    if (object != nullptr) HandleTraits<T>::retain(object);
+    if (object != nullptr) check(HandleTraits<T>::retain(object), "clRetain");
     return Handle(object);
   }
 

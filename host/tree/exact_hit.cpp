@@ -182,11 +182,19 @@ ExactHit exact_intersect(const Ray& ray, const Triangle& triangle) {
 bool is_traceable(const Ray& ray) {
   if (!all_finite(ray.origin) || !all_finite(ray.direction)) return false;
   if (std::isnan(ray.tmin) || std::isnan(ray.tmax)) return false;
-  return ray.direction[0] != 0.0F || ray.direction[1] != 0.0F || ray.direction[2] != 0.0F;
+  const float longest =
+      std::max({std::fabs(ray.direction[0]), std::fabs(ray.direction[1]), std::fabs(ray.direction[2])});
+  return longest >= 0x1p-100F && longest <= 0x1p100F;
 }
 
+// Not std::clamp: a tmin of +inf and a tmax of -inf leave nothing, and must go on doing so.
+FiniteRange::FiniteRange(const Ray& ray)
+    : tmin(std::max(ray.tmin, -std::numeric_limits<float>::max())),
+      tmax(std::min(ray.tmax, std::numeric_limits<float>::max())) {}
+
 bool in_range(const Ray& ray, const FoundHit& found) {
-  return compare(ray, found, ray.tmin) >= 0 && compare(ray, found, ray.tmax) <= 0;
+  const FiniteRange range(ray);
+  return compare(ray, found, range.tmin) >= 0 && compare(ray, found, range.tmax) <= 0;
 }
 
 bool nearer(const Ray& ray, const FoundHit& a, const FoundHit& b) {

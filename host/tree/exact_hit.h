@@ -12,11 +12,18 @@ struct FoundHit {
   ExactHit hit;
 };
 
-// A ray with finite origin and direction, a direction that is not zero and no NaN in its range; others miss
-// everything.
+// A ray with finite origin and direction, the longest component of its direction between 2^-100 and 2^100 in
+// magnitude, and no NaN in its range; others miss everything.
 [[nodiscard]] bool is_traceable(const Ray& ray);
 
-// Whether tmin <= t <= tmax, decided for the exact t.
+// The range that rays are traced in: their own, but for what lies beyond the largest float.
+struct FiniteRange {
+  explicit FiniteRange(const Ray& ray);
+  float tmin;
+  float tmax;
+};
+
+// Whether t is in the finite range, decided for the exact t.
 [[nodiscard]] bool in_range(const Ray& ray, const FoundHit& found);
 
 // Whether a's exact t is smaller than b's, both on the same ray.

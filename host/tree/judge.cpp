@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "gnomon/tree/candidate_tree.h"
 #include "gnomon/tree/candidates.h"
 #include "gnomon/tree/exact_hit.h"
 
@@ -27,11 +28,11 @@ constexpr std::uint64_t kBundle =
     32;  // rays judged together: they share the copying of triangles into blocks
 constexpr std::size_t kBadRaysKept = 16;
 
-// Spacing of floats at t: that of the smallest normal below it (devices may flush), none beyond the largest
-// float.
+// Spacing of floats at t: that of the smallest normal below it (devices may flush), that of the largest
+// beyond it.
 double float_ulp(double t) {
   const double magnitude = std::fabs(t);
-  if (magnitude > std::numeric_limits<float>::max()) return kInfinity;
+  if (magnitude > std::numeric_limits<float>::max()) return 0x1p104;
   if (magnitude < std::numeric_limits<float>::min()) return std::numeric_limits<float>::min();
   return std::ldexp(1.0, std::ilogb(magnitude) - 23);
 }
@@ -65,11 +66,20 @@ struct Findings {
 };
 
 bool is_possible(const Ray& ray, const ExactHit& hit, double tolerance) {
-  return hit.t >= ray.tmin - tolerance && hit.t <= ray.tmax + tolerance;
+  const FiniteRange range(ray);
+  return hit.t >= range.tmin - tolerance && hit.t <= range.tmax + tolerance;
 }
 
 bool is_safe(const Ray& ray, const ExactHit& hit, double tolerance) {
-  return hit.t >= ray.tmin + tolerance && hit.t <= ray.tmax - tolerance;
+  const FiniteRange range(ray);
+  return hit.t >= range.tmin + tolerance && hit.t <= range.tmax - tolerance;
+}
+
+// Whether a hit is nearer than the closest safe one so far, or as near with a lower number: triangles come in
+// any order.
+bool comes_first(const Ray& ray, const FoundHit& found, std::uint32_t primitive, const Findings& findings) {
+  if (nearer(ray, found, findings.safe)) return true;
+  return primitive < findings.safe_primitive && !nearer(ray, findings.safe, found);
 }
 
 void gather(const Batch& batch, std::uint64_t index, std::uint32_t primitive, Findings& findings) {
@@ -84,7 +94,7 @@ void gather(const Batch& batch, std::uint64_t index, std::uint32_t primitive, Fi
   }
   if (!is_safe(ray, found.hit, tolerance)) {
     findings.nearest_doubtful = std::min(findings.nearest_doubtful, found.hit.t);
-  } else if (!findings.has_safe() || nearer(ray, found, findings.safe)) {
+  } else if (!findings.has_safe() || comes_first(ray, found, primitive, findings)) {
     findings.safe = found;
     findings.safe_primitive = primitive;
   }
@@ -115,10 +125,9 @@ Fault fault_of_any(bool reported, const Findings& findings) {
 
 // How exact a hit that stands is. A NaN in u or v is an error without bound.
 void measure(const Hit& reported, const ExactHit& exact, OracleReport& report) {
-  const double ulp = float_ulp(exact.t);
-  if (ulp < kInfinity) {
-    report.max_t_error_ulp = std::max(report.max_t_error_ulp, std::fabs(reported.t - exact.t) / ulp);
-  }
+  const double t_error = std::fabs(reported.t - exact.t) / float_ulp(exact.t);
+  report.max_t_error_ulp = std::max(report.max_t_error_ulp, t_error);
+  report.t_errors.add(t_error);
   for (const double error : {std::fabs(reported.u - exact.u), std::fabs(reported.v - exact.v)}) {
     report.max_uv_error = std::max(report.max_uv_error, std::isnan(error) ? kInfinity : error);
   }
@@ -174,19 +183,41 @@ struct Sample {
   }
 };
 
+// An end of a range moved by more than the tolerance of any t near it.
+double widened(double end, double outwards, double tolerance_ulp) {
+  return std::isinf(end) ? end : end + outwards * 2.0 * (tolerance_ulp + 1.0) * float_ulp(end);
+}
+
+// One ray by the tree: no farther than the closest safe hit, as nothing behind that counts.
+void judge_by_tree(const Batch& batch, std::uint64_t index, OracleReport& report) {
+  const Ray& ray = batch.rays[index];
+  const double tolerance = batch.options.t_tolerance_ulp;
+  const FiniteRange range(ray);
+  const double tmax = widened(range.tmax, 1.0, tolerance);
+  Findings findings;
+  batch.options.tree->visit(ray, widened(range.tmin, -1.0, tolerance), tmax, [&](std::uint32_t primitive) {
+    gather(batch, index, primitive, findings);
+    return findings.has_safe() ? widened(findings.safe.hit.t, 1.0, tolerance) : tmax;
+  });
+  judge_ray(batch, index, findings, report);
+}
+
 void judge_bundle(const Batch& batch, const Sample& sample, std::uint64_t bundle, OracleReport& report) {
   std::vector<std::uint64_t> indices;
   std::vector<LineFilter> filters;
   std::vector<Findings> findings;
   for (std::uint64_t place = bundle; place < sample.taken; place += sample.bundles) {
     const std::uint64_t index = sample.ray(place);
-    if (is_traceable(batch.rays[index])) {
+    if (!is_traceable(batch.rays[index])) {
+      judge_ray(batch, index, Findings{}, report);
+    } else if (batch.options.tree != nullptr) {
+      judge_by_tree(batch, index, report);
+    } else {
       indices.push_back(index);
       filters.emplace_back(batch.rays[index]);
-    } else {
-      judge_ray(batch, index, Findings{}, report);
     }
   }
+  if (indices.empty()) return;
   findings.resize(indices.size());
   visit_candidates(filters, batch.triangles, [&](std::size_t slot, std::uint32_t primitive) {
     gather(batch, indices[slot], primitive, findings[slot]);
@@ -219,20 +250,6 @@ OracleReport work(const Batch& batch, const Sample& sample, Shared& shared, cons
   return part;
 }
 
-void merge(const OracleReport& part, OracleReport& whole) {
-  whole.rays_judged += part.rays_judged;
-  whole.hits += part.hits;
-  whole.lost += part.lost;
-  whole.false_hits += part.false_hits;
-  whole.wrong_primitive += part.wrong_primitive;
-  whole.ties += part.ties;
-  whole.any_closest_disagree += part.any_closest_disagree;
-  whole.range_ambiguous += part.range_ambiguous;
-  whole.max_t_error_ulp = std::max(whole.max_t_error_ulp, part.max_t_error_ulp);
-  whole.max_uv_error = std::max(whole.max_uv_error, part.max_uv_error);
-  whole.bad_rays.insert(whole.bad_rays.end(), part.bad_rays.begin(), part.bad_rays.end());
-}
-
 void require_length(std::size_t given, std::size_t rays, const char* what) {
   if (given == 0 || given == rays) return;
   throw Error(ErrorCode::kInvalidArgument,
@@ -259,7 +276,7 @@ OracleReport judge(std::span<const Triangle> triangles, std::span<const Ray> ray
       helpers.push_back(std::async(std::launch::async, [&] { return work(batch, sample, shared, {}); }));
     }
     report = work(batch, sample, shared, progress);
-    for (std::future<OracleReport>& helper : helpers) merge(helper.get(), report);
+    for (std::future<OracleReport>& helper : helpers) report.add(helper.get());
   } catch (...) {
     shared.stop = true;
     throw;

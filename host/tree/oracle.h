@@ -2,7 +2,9 @@
 // float code and of any tree. Slow by design. Feeds `validate`, tests and error figures.
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -35,15 +37,30 @@ struct OracleHit {
   double t = 0.0;                     // +inf: a miss
   std::uint32_t primitive = GN_NONE;  // lowest index among exactly equal t
 };
-// Closest hit with tmin <= t <= tmax over all triangles. Rays with NaN, an infinite origin or a zero
-// direction miss.
+// Closest hit with tmin <= t <= tmax and |t| <= FLT_MAX over all triangles. Rays with NaN, an infinite
+// origin, or a direction whose longest component is not between 2^-100 and 2^100 miss.
 [[nodiscard]] OracleHit oracle_closest(const Ray& ray, std::span<const Triangle> triangles);
+
+class CandidateTree;
 
 struct OracleOptions {
   std::uint64_t max_rays = 4096;                 // evenly strided sample of the batch
   std::chrono::milliseconds time_budget{20000};  // stop early, keep what is judged
   unsigned threads = 0;                          // 0: all
   double t_tolerance_ulp = 4.0;  // of the device's t, before a nearer or farther hit is a fault
+  // Of the same triangles: rays look at what it offers them, not at every triangle. For many rays.
+  const CandidateTree* tree = nullptr;
+};
+
+// How many hits' t were wrong by how much, in steps of 1/16 ulp of the exact t as float; the last: by 8 ulp
+// or more.
+struct ErrorCounts {
+  static constexpr std::size_t kPerUlp = 16;
+  std::array<std::uint64_t, 8 * kPerUlp + 1> steps{};
+  void add(double ulp);
+  // Within this error, in ulp, lies so large a share of all; the upper end of a step, +inf for the last, 0
+  // for none.
+  [[nodiscard]] double quantile(double share) const;
 };
 
 // Judgement of a batch: closest hits and any-hit answers against the oracle.
@@ -59,11 +76,14 @@ struct OracleReport {
   std::uint64_t any_closest_disagree = 0;
   std::uint64_t range_ambiguous = 0;    // t within tolerance of tmin or tmax: either answer stands
   double max_t_error_ulp = 0.0;         // over agreeing hits, in ulp of the exact t as float
+  ErrorCounts t_errors;                 // of the same hits
   double max_uv_error = 0.0;            // over agreeing hits of the same triangle, absolute
   std::vector<std::uint64_t> bad_rays;  // indices of the first 16 at fault
   [[nodiscard]] std::uint64_t mismatches() const {
     return lost + false_hits + wrong_primitive + any_closest_disagree;
   }
+  // Adds another batch's counts; its bad rays are appended, whatever batch they count from.
+  void add(const OracleReport& other);
 };
 
 // Judges device results. `any` may be empty (then only closest hits are judged); `hits` may be empty

@@ -16,7 +16,9 @@ ReferenceTrace trace_by(std::span<const Ray> rays, const MakeWalk& make_walk) {
   ReferenceTrace out;
   out.hits.reserve(rays.size());
   out.counters.reserve(rays.size());
-  for (const Ray& ray : rays) {
+  for (Ray ray : rays) {
+    ray.tmin = gn_finite_tmin(ray.tmin);
+    ray.tmax = gn_finite_tmax(ray.tmax);
     auto walk = make_walk(ray);
     if (gn_ray_is_valid(&ray) != 0) {
       walk.run();

@@ -122,6 +122,7 @@ class Walk {
 
   // A triangle that is met for certain, by floats between nearest and farthest.
   void test_met(const Place& place, float nearest, float farthest) {
+    if (!(farthest - nearest < GN_INFINITY)) return test_exactly(place, -1);  // something overflowed
     if (farthest < ray_.tmin || nearest > ray_.tmax) return;
     if (found_ && nearest > farthest_) return;
     if (!(nearest >= ray_.tmin && farthest <= ray_.tmax && (!found_ || farthest < nearest_)))

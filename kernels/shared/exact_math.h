@@ -1,5 +1,6 @@
-// The exact sign of a ray against a triangle's edge, for float input, from double arithmetic alone. Rarely reached:
-// hit_math.h comes here only when a float filter cannot decide. Devices without fp64 never compile it.
+// The exact sign of a ray against a triangle's edge, and where it meets the triangle's plane, for float input, from
+// double arithmetic alone. Rarely reached: hit_math.h comes here only when floats cannot decide, or doubles not tell t to
+// a float's last bit. Devices without fp64 never compile it.
 // Source: expansion arithmetic after Shewchuk, "Adaptive Precision Floating-Point Arithmetic", 1997.
 #ifndef GNOMON_SHARED_EXACT_MATH_H
 #define GNOMON_SHARED_EXACT_MATH_H
@@ -41,19 +42,53 @@ GN_INLINE int gn_grow_by_minor(double* e, int size, double d, double p, double q
   return size;
 }
 
-// Sign of det(d, a - o, b - o) = d . (a x b + b x o + o x a), exactly: 36 exact terms summed as an expansion.
-GN_INLINE int gn_exact_edge_sign(const gn_f32* d, const gn_f32* o, const gn_f32* a, const gn_f32* b) {
-  double e[40];
-  int i, size = 0;
+// Adds sign * det(a, b, c).
+GN_INLINE int gn_grow_by_determinant(double* e, int size, double sign, const gn_f32* a, const gn_f32* b,
+                                     const gn_f32* c) {
+  int i;
   for (i = 0; i < 3; ++i) {
     const int j = i == 2 ? 0 : i + 1;
     const int k = i == 0 ? 2 : i - 1;
-    size = gn_grow_by_minor(e, size, d[i], a[j], b[k], a[k], b[j]);
-    size = gn_grow_by_minor(e, size, d[i], b[j], o[k], b[k], o[j]);
-    size = gn_grow_by_minor(e, size, d[i], o[j], a[k], o[k], a[j]);
+    size = gn_grow_by_minor(e, size, sign * a[i], b[j], c[k], b[k], c[j]);
   }
+  return size;
+}
+
+// det(d, a - o, b - o) = det(d, a, b) + det(d, b, o) + det(d, o, a), exactly: 36 exact terms summed as an expansion. e
+// needs room for 40.
+GN_INLINE int gn_exact_edge(double* e, const gn_f32* d, const gn_f32* o, const gn_f32* a, const gn_f32* b) {
+  int size = gn_grow_by_determinant(e, 0, 1.0, d, a, b);
+  size = gn_grow_by_determinant(e, size, 1.0, d, b, o);
+  return gn_grow_by_determinant(e, size, 1.0, d, o, a);
+}
+
+GN_INLINE int gn_exact_edge_sign(const gn_f32* d, const gn_f32* o, const gn_f32* a, const gn_f32* b) {
+  double e[40];
+  const int size = gn_exact_edge(e, d, o, a, b);
   if (size == 0) return 0;
   return e[size - 1] > 0.0 ? 1 : -1;
+}
+
+// An expansion as a double: its components do not overlap, so what is lost is below 2^-45 of it.
+GN_INLINE double gn_expansion_value(const double* e, int size) {
+  double sum = 0.0;
+  int i;
+  for (i = 0; i < size; ++i) sum += e[i];
+  return sum;
+}
+
+// The t at which a ray meets the plane of a triangle that it is not parallel to: det(v0 - o, v1 - o, v2 - o) over
+// det(d, v0 - v2, v1 - v2). Both are summed exactly, so t is right to half an ulp and 2^-43.
+GN_INLINE gn_f32 gn_exact_t(const gn_f32* d, const gn_f32* o, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2) {
+  double e[52];
+  double numerator;
+  int size = gn_grow_by_determinant(e, 0, 1.0, v0, v1, v2);
+  size = gn_grow_by_determinant(e, size, -1.0, o, v1, v2);
+  size = gn_grow_by_determinant(e, size, -1.0, v0, o, v2);
+  size = gn_grow_by_determinant(e, size, -1.0, v0, v1, o);
+  numerator = gn_expansion_value(e, size);
+  size = gn_exact_edge(e, d, v2, v0, v1);
+  return (gn_f32)(numerator / gn_expansion_value(e, size));
 }
 
 #endif

@@ -1,78 +1,15 @@
-// Ray against box and ray against triangle, for both compilers. The box test is conservative (it never rejects a box
-// the exact ray meets) and NaN-safe. The triangle test decides hit or miss exactly: a float filter answers almost
-// always, wide and expansion arithmetic answer the rest, so shared edges and vertices never leak and no epsilon
-// exists. On a device without fp64 what pairs of floats cannot decide counts as inside: still nothing lost, but a hit
-// may then lie outside its triangle by 2^-40 of the distance. Not for trees (traversal) or double-precision judging (oracle).
-// Sources: Woop, Benthin, Wald 2013 (shear); Ize 2013 (conservative slabs).
+// Ray against triangle, for both compilers. Hit or miss is decided exactly: a float filter answers almost always, wide
+// and expansion arithmetic answer the rest, so shared edges and vertices never leak and no epsilon exists. On a
+// device without fp64 what pairs of floats cannot decide counts as inside: still nothing lost, but a hit may then lie
+// outside its triangle by 2^-40 of the distance. Not for boxes (ray_math.h), trees (traversal) or double-precision judging
+// (oracle).
+// Source: Woop, Benthin, Wald 2013 (shear).
 #ifndef GNOMON_SHARED_HIT_MATH_H
 #define GNOMON_SHARED_HIT_MATH_H
 
-#include "build_layout.h"
 #include "exact_math.h"
+#include "ray_math.h"
 #include "wide_math.h"
-
-// What is computed once per ray.
-typedef struct GnRayFrame {
-  gn_f32 origin[3];
-  gn_f32 direction[3];
-  gn_f32 inverse[3];  // 1 / direction; +-inf for zero components
-  gn_f32 shear_x;     // direction[kx] / direction[kz]
-  gn_f32 shear_y;
-  gn_u32 kx, ky, kz;  // kz: the axis of the largest direction component
-} GnRayFrame;
-
-GN_INLINE int gn_is_finite(gn_f32 x) { return (gn_bits_of(x) & 0x7f800000u) != 0x7f800000u; }
-
-// A ray we can trace: finite origin and direction, direction not zero, a range that is not NaN.
-GN_INLINE int gn_ray_is_valid(const GnRay* ray) {
-  int k, nonzero = 0;
-  for (k = 0; k < 3; ++k) {
-    if (!gn_is_finite(ray->origin[k]) || !gn_is_finite(ray->direction[k])) return 0;
-    nonzero |= ray->direction[k] != 0.0f;
-  }
-  return nonzero && ray->tmin == ray->tmin && ray->tmax == ray->tmax;
-}
-
-GN_INLINE GnRayFrame gn_ray_frame(const GnRay* ray) {
-  GnRayFrame frame;
-  int k;
-  for (k = 0; k < 3; ++k) {
-    frame.origin[k] = ray->origin[k];
-    frame.direction[k] = ray->direction[k];
-    frame.inverse[k] = 1.0f / ray->direction[k];
-  }
-  frame.kz = gn_abs(ray->direction[1]) > gn_abs(ray->direction[0]) ? 1u : 0u;
-  if (gn_abs(ray->direction[2]) > gn_abs(ray->direction[frame.kz])) frame.kz = 2u;
-  frame.kx = frame.kz == 2u ? 0u : frame.kz + 1u;
-  frame.ky = frame.kx == 2u ? 0u : frame.kx + 1u;
-  frame.shear_x = ray->direction[frame.kx] / ray->direction[frame.kz];
-  frame.shear_y = ray->direction[frame.ky] / ray->direction[frame.kz];
-  return frame;
-}
-
-// Twice the relative error a slab distance can have (subtraction 1/2 ulp, reciprocal 2.5 ulp, product 1/2 ulp, on
-// near and on far: 15 x 2^-24), rounded up to 2^-19.
-#define GN_SLAB_SLACK 1.9073486e-06f
-
-// The largest parameter at which a box still matters when the nearest hit so far, or tmax, is t. Multiplies, so that
-// infinities stay themselves.
-GN_INLINE gn_f32 gn_slab_limit(gn_f32 t) { return t * (t < 0.0f ? 1.0f - GN_SLAB_SLACK : 1.0f + GN_SLAB_SLACK); }
-
-// Where the ray enters the box, or +inf if it misses it within [tmin, limit]. limit comes from gn_slab_limit.
-// 0 * inf (a ray in a face's plane) gives NaN, which loses every comparison: that slab then bounds nothing.
-GN_INLINE gn_f32 gn_box_entry(const GnRayFrame* ray, const gn_f32* lo, const gn_f32* hi, gn_f32 tmin, gn_f32 limit) {
-  gn_f32 near = tmin, far = GN_INFINITY;
-  int k;
-  for (k = 0; k < 3; ++k) {
-    const int backwards = ray->inverse[k] < 0.0f;
-    const gn_f32 a = ((backwards ? hi[k] : lo[k]) - ray->origin[k]) * ray->inverse[k];
-    const gn_f32 b = ((backwards ? lo[k] : hi[k]) - ray->origin[k]) * ray->inverse[k];
-    near = gn_max(a, near);
-    far = gn_min(b, far);
-  }
-  far = gn_min(gn_slab_limit(far), limit);
-  return near <= far ? near : GN_INFINITY;
-}
 
 // A triangle's edge functions along the ray in floats, and what bounds their errors.
 typedef struct GnEdges {
@@ -203,13 +140,33 @@ GN_INLINE int gn_signs_agree(const GnRayFrame* ray, const gn_f32* v0, const gn_f
   return !(positive && negative) && (positive || negative || open);
 }
 
+// Whether t, a mean of the corners' distances r by weights with these permanents, may be wrong by more than 2^-28 of
+// itself: weights are wrong by 8 x 2^-53 of their permanents, which moves the mean by that share of the distances'
+// spread, and sums round by less. So it is for needles and for rays that start in the triangle's plane or next to it.
+GN_INLINE int gn_mean_is_doubtful(const GnWide* r, gn_u32 kz, const GnWide* permanents, GnWide distance) {
+#if GN_HAS_FP64
+  const double a = r[kz], b = r[3 + kz], c = r[6 + kz];
+  const double most = a > b ? (a > c ? a : c) : (b > c ? b : c);
+  const double least = a < b ? (a < c ? a : c) : (b < c ? b : c);
+  return 2.0 * GN_WIDE_EPSILON * (permanents[0] + permanents[1] + permanents[2]) * (most - least) >
+         3.7252903e-09 * fabs(distance);
+#else
+  (void)r;
+  (void)kz;
+  (void)permanents;
+  (void)distance;
+  return 0;
+#endif
+}
+
 // Fills u, v and t / t_unit from the edges' determinants and the corners' distances along axis kz. t is a mean of these
-// distances with weights of one sign: well-conditioned however thin the triangle.
-GN_INLINE void gn_fill_hit(const GnWide* r, gn_u32 kz, gn_f32 direction, gn_f32 t_unit, GnWide* weights, GnHit* hit) {
+// distances with weights of one sign. True: that mean is not good enough for t.
+GN_INLINE int gn_fill_hit(const GnWide* r, gn_u32 kz, gn_f32 direction, gn_f32 t_unit, GnWide* weights,
+                          const GnWide* permanents, GnHit* hit) {
   GnWide sum = gn_wide_add(gn_wide_add(weights[0], weights[1]), weights[2]);
   GnWide distance = gn_wide_of(0.0f);
   const int side = gn_wide_sign(sum);
-  int i;
+  int i, doubtful = 0;
   for (i = 0; i < 3; ++i) {
     // Rounding may leave a weight with the wrong sign where the ray meets an edge: it is zero there.
     if (gn_wide_sign(weights[i]) * side < 0) weights[i] = gn_wide_of(0.0f);
@@ -218,11 +175,13 @@ GN_INLINE void gn_fill_hit(const GnWide* r, gn_u32 kz, gn_f32 direction, gn_f32 
   if (gn_wide_sign(sum) == 0) {  // met, but too thin even for wide arithmetic: its middle
     for (i = 0; i < 3; ++i) weights[i] = gn_wide_of(1.0f);
     sum = gn_wide_of(3.0f);
+    doubtful = 1;
   }
   for (i = 0; i < 3; ++i) distance = gn_wide_add(distance, gn_wide_multiply(weights[i], r[3 * i + kz]));
   hit->t = gn_wide_ratio(distance, gn_wide_scale(sum, direction)) * t_unit;
   hit->u = gn_wide_ratio(weights[1], sum);
   hit->v = gn_wide_ratio(weights[2], sum);
+  return doubtful || gn_mean_is_doubtful(r, kz, permanents, distance);
 }
 
 // The corners seen from the ray's origin; returns the largest distance along an axis.
@@ -257,7 +216,11 @@ GN_INLINE int gn_triangle_resolve(const GnRayFrame* ray, const gn_f32* v0, const
     weights[i] = gn_wide_determinant(direction, r + 3 * next, r + 3 * previous, permanents + i);
   }
   if (verdict < 0 && !gn_signs_agree(ray, v0, v1, v2, weights, permanents)) return 0;
-  gn_fill_hit(r, ray->kz, direction[ray->kz], direction_unit / unit, weights, hit);
+  if (gn_fill_hit(r, ray->kz, direction[ray->kz], direction_unit / unit, weights, permanents, hit)) {
+#if GN_HAS_FP64
+    hit->t = gn_exact_t(ray->direction, ray->origin, v0, v1, v2);
+#endif
+  }
   return 1;
 }
 

@@ -47,7 +47,14 @@ typedef struct GnNode {
 } GnNode;
 GN_SIZE_IS(GnNode, 32);
 
-// One ray: points origin + t * direction with tmin <= t <= tmax. The direction need not have unit length.
+// The longest component of a direction must have a magnitude between these: 2^-100 and 2^100, about 8e-31 and 1.2e30.
+// In between its reciprocal is a normal float on every device, and what a device flushes to zero of the shorter components
+// is below 2^-26 of it, which the bounds of hit_math.h cover. Rays outside miss and are counted as invalid.
+#define GN_SHORTEST_DIRECTION 7.8886091e-31f
+#define GN_LONGEST_DIRECTION 1.2676506e+30f
+
+// One ray: points origin + t * direction with tmin <= t <= tmax. The direction need not have unit length, but see above.
+// t is a finite float: what lies beyond the largest is not met, however wide the range.
 typedef struct GnRay {
   gn_f32 origin[3];
   gn_f32 tmin;

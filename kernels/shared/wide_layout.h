@@ -29,6 +29,12 @@ GN_INLINE gn_u32 gn_link_block(gn_u32 link) { return link & (GN_MAX_BLOCKS - 1u)
 GN_INLINE gn_u32 gn_link_triangles(gn_u32 link) { return ((link >> 23) & 255u) + 1u; }
 GN_INLINE gn_u32 gn_blocks_of(gn_u32 triangles) { return (triangles + GN_WIDTH - 1u) / GN_WIDTH; }
 
+// The end of a run of `length` items from `first` on, of `count` in all, first being no more than that. Never beyond
+// 2^32, where first + length may be.
+GN_INLINE gn_u32 gn_run_end(gn_u32 first, gn_u32 count, gn_u32 length) {
+  return count - first < length ? count : first + length;
+}
+
 // Eight triangles: corners[3 * corner + axis] of all, and their numbers in the caller's array. Places behind a leaf's
 // last triangle are zero and have the number GN_NONE.
 typedef struct GnTriangleBlock {

@@ -2,41 +2,16 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "run_program.h"
+#include "broken_kernels.h"
 
 using Catch::Contains;
 using nlohmann::json;
+using program::BrokenKernels;
+using program::Edit;
 using program::Folder;
 using program::run;
 
 namespace {
-
-struct Edit {
-  std::string file, right, wrong;
-};
-
-// A copy of the kernels with some of their text replaced. Text that is no longer there fails the test: then
-// the fault has to be planted anew.
-class BrokenKernels {
- public:
-  explicit BrokenKernels(const std::vector<Edit>& edits) {
-    std::filesystem::copy(GNOMON_KERNEL_FOLDER, kernels_, std::filesystem::copy_options::recursive);
-    for (const Edit& edit : edits) {
-      std::string text = program::read_text(kernels_ / edit.file);
-      const auto at = text.find(edit.right);
-      CAPTURE(edit.file, edit.right);
-      REQUIRE(at != std::string::npos);
-      program::write_text(kernels_ / edit.file, text.replace(at, edit.right.size(), edit.wrong));
-    }
-  }
-  [[nodiscard]] program::Setup setup() const {
-    return {{{"GNOMON_KERNELS", kernels_.string()}}, false, {}, {}};
-  }
-
- private:
-  Folder folder_;
-  std::filesystem::path kernels_ = folder_.path() / "kernels";
-};
 
 const std::vector<std::string> kValidate{"validate", "gen:cottage:8k", "--count", "3k", "--max-rays",
                                          "300",      "--json"};

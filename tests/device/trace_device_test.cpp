@@ -145,13 +145,53 @@ TEST_CASE("rays that are not traceable miss and are counted", "[portable][memche
   rays.push_back(ray({0, 0, INFINITY}, {0, 0, 1}));
   rays.push_back(ray({0, 0, 0}, {0, 0, 0}));
   rays.push_back(ray({0, 0, 0}, {0, 0, 1}, nan));
+  rays.push_back(ray({5, 5, 0}, {0, 0, 2e-39F}));
+  rays.push_back(ray({5, 5, 0}, {1e-38F, 0, 7e-31F}));
+  rays.push_back(ray({5, 5, 0}, {0, 2e38F, 2e38F}));
   const Traced traced = trace(gnomon::test::soup(100, 67, 5.0F), rays);
-  REQUIRE(traced.closest.invalid_rays == 5);
-  REQUIRE(traced.any.invalid_rays == 5);
+  REQUIRE(traced.closest.invalid_rays == 8);
+  REQUIRE(traced.any.invalid_rays == 8);
   for (std::size_t i = 20; i < rays.size(); ++i) {
     REQUIRE(traced.closest.hits[i].primitive == GN_NONE);
     REQUIRE(traced.closest.hits[i].t == INFINITY);
     REQUIRE(traced.any.occluded[i] == 0);
+  }
+}
+
+TEST_CASE("directions from the shortest to the longest hit what unit ones do", "[portable]") {
+  const auto triangles = gnomon::test::soup(300, 75, 2.0F);
+  const std::vector<GnRay> units = gnomon::test::random_rays(200, 76);
+  const Traced expected = trace(triangles, units);
+  for (const int power : {-99, -60, -1, 50, 100}) {
+    std::vector<GnRay> rays = units;
+    for (GnRay& r : rays) {
+      for (float& x : r.direction) x = std::ldexp(x, power);
+    }
+    const Traced traced = trace(triangles, rays);
+    CAPTURE(power);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      CAPTURE(i, units[i].direction);
+      const float* d = rays[i].direction;
+      if (std::max({std::fabs(d[0]), std::fabs(d[1]), std::fabs(d[2])}) < 0x1p-100F) continue;
+      REQUIRE(traced.closest.hits[i].primitive == expected.closest.hits[i].primitive);
+      REQUIRE(traced.closest.hits[i].t == std::ldexp(expected.closest.hits[i].t, -power));
+      REQUIRE(traced.any.occluded[i] == expected.any.occluded[i]);
+    }
+  }
+}
+
+TEST_CASE("a hit beyond the largest float is none", "[portable]") {
+  const Traced traced = trace(gnomon::test::grid(2, 0x1p30F),
+                              {ray({0.7F, 0, 0.4F}, {0, 0x1p-97F, 0}), ray({0.7F, 0, 0.4F}, {0, 0x1p-98F, 0}),
+                               ray({0.7F, 0, 0.4F}, {0, -0x1p-97F, 0}, -INFINITY),
+                               ray({0.7F, 0, 0.4F}, {0, -0x1p-98F, 0}, -INFINITY)});
+  REQUIRE(traced.closest.hits[0].t == 0x1p127F);
+  REQUIRE(traced.any.occluded[0] == 1);
+  REQUIRE(traced.closest.hits[2].t == -0x1p127F);
+  REQUIRE(traced.any.occluded[2] == 1);
+  for (const std::size_t beyond : {1U, 3U}) {
+    REQUIRE(traced.closest.hits[beyond].primitive == GN_NONE);
+    REQUIRE(traced.any.occluded[beyond] == 0);
   }
 }
 

@@ -264,14 +264,77 @@ TEST_CASE("where floats meet a triangle that is met for certain is as far off as
   REQUIRE(widest > 0.01);  // the bound is within reach: a hundredth of it would be seen to fail
 }
 
-TEST_CASE("rays with NaN, infinite origins or no direction are not valid") {
+// Needles, rays that start in a triangle's plane or a last bit off it, and others, up to 1e6 from the origin.
+TEST_CASE(
+    "t is within 9/16 ulp of the exact one, however thin the triangle and however near the ray starts") {
+  gnomon::test::Random random(301);
+  int met = 0;
+  double worst = 0.0;
+  for (int i = 0; i < 200'000; ++i) {
+    const float offset = i % 3 == 0 ? 0.0F : i % 3 == 1 ? 1e3F : 1e6F;
+    const float width = std::ldexp(1.0F, -static_cast<int>(random.below(30)));
+    std::array<float, 3> a{}, b{}, c{}, inside{}, d{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      a[k] = offset + random.between(-10, 10);
+      b[k] = a[k] + random.between(-10, 10);
+      c[k] = 0.5F * (a[k] + b[k]) + width * random.between(-1, 1);
+      inside[k] = 0.25F * a[k] + 0.25F * b[k] + 0.5F * c[k];
+      d[k] = random.between(-1, 1);
+    }
+    const float back = i % 4 == 0   ? 0.0F
+                       : i % 4 == 1 ? random.between(-1e-5F, 1e-5F)
+                                    : random.between(-20, 20);
+    for (std::size_t k = 0; k < 3; ++k) inside[k] -= back * d[k];
+    const GnRay r = gnomon::test::ray(inside, d);
+    const GnTriangle t = gnomon::test::triangle(a, b, c);
+    const GnRayFrame frame = gn_ray_frame(&r);
+    GnHit hit{};
+    const gnomon::ExactHit exact = gnomon::exact_intersect(r, t);
+    REQUIRE((gn_triangle_hit(&frame, t.v0, t.v1, t.v2, &hit) != 0) == exact.inside);
+    if (!exact.inside) continue;
+    ++met;
+    const double ulp =
+        std::ldexp(1.0, std::max(std::ilogb(std::max(std::fabs(exact.t), 0x1p-126)), -126) - 23);
+    worst = std::max(worst, std::fabs(static_cast<double>(hit.t) - exact.t) / ulp);
+  }
+  REQUIRE(met > 20'000);
+  REQUIRE(worst > 0.49);
+  REQUIRE(worst <= 0.5625);
+}
+
+TEST_CASE("rays with NaN, infinite origins, no direction or one too short or too long are not valid") {
   const float nan = std::nanf("");
   REQUIRE(gn_ray_is_valid(std::data({gnomon::test::ray({0, 0, 0}, {0, 0, 1})})) != 0);
   for (const GnRay& bad :
        {gnomon::test::ray({nan, 0, 0}, {0, 0, 1}), gnomon::test::ray({0, INFINITY, 0}, {0, 0, 1}),
         gnomon::test::ray({0, 0, 0}, {0, nan, 1}), gnomon::test::ray({0, 0, 0}, {0, 0, 0}),
         gnomon::test::ray({0, 0, 0}, {0, -0.0F, 0}), gnomon::test::ray({0, 0, 0}, {INFINITY, 0, 1}),
-        gnomon::test::ray({0, 0, 0}, {0, 0, 1}, nan), gnomon::test::ray({0, 0, 0}, {0, 0, 1}, 0, nan)}) {
+        gnomon::test::ray({0, 0, 0}, {0, 0, 1}, nan), gnomon::test::ray({0, 0, 0}, {0, 0, 1}, 0, nan),
+        gnomon::test::ray({0, 0, 0}, {1e-40F, 0, -1e-39F}),
+        gnomon::test::ray({0, 0, 0}, {0, -0x1.fffffep-101F, 0}),
+        gnomon::test::ray({0, 0, 0}, {0x1.000002p100F, 1, 1})}) {
     REQUIRE(gn_ray_is_valid(&bad) == 0);
+  }
+  for (const float length : {0x1p-100F, 0x1p100F}) {
+    for (const float other : {0.0F, 1e-45F, -length}) {
+      const GnRay good = gnomon::test::ray({0, 0, 0}, {other, length, other});
+      REQUIRE(gn_ray_is_valid(&good) != 0);
+    }
+  }
+}
+
+// What a device makes of denormals: it may flush them, and 1 / 0 is infinite.
+TEST_CASE("a denormal component of a direction loses no box") {
+  for (const float component : {1e-45F, 1e-39F, 1.1e-38F}) {
+    for (const float sense : {1.0F, -1.0F}) {
+      const GnRay r = gnomon::test::ray({0, 0, 0}, {sense * component, 1, 0});
+      const GnRayFrame frame = gn_ray_frame(&r);
+      CAPTURE(component, sense);
+      // Reached at t = 1e30: x from 1e30 * component on.
+      const float near_x = sense * 1e30F * component * 0.5F;
+      const float lo[3] = {gn_min(near_x, 4 * near_x), 0.99e30F, -1};
+      const float hi[3] = {gn_max(near_x, 4 * near_x), 1.01e30F, 1};
+      REQUIRE(gn_box_entry(&frame, lo, hi, 0.0F, gn_slab_limit(GN_FLOAT_MAX)) <= 1e30F);
+    }
   }
 }

@@ -54,14 +54,24 @@ TEST_CASE("a hit within the tolerance stands and is measured") {
   CHECK(judge_one(ahead(), {3, 0.25F, kNan, 0}).max_uv_error == std::numeric_limits<double>::infinity());
 }
 
-TEST_CASE("distances that a float cannot hold are not held against the device") {
-  const Ray slow{{0, 0, 0}, 0, {0, 0, 0x1p-130F}, kInf};  // t = 3 * 2^130
-  CHECK(counts(judge_one(slow, kMiss)) == kAmbiguous);
-  CHECK(counts(judge_one(slow, hit_at(kInf, 0))) == kAmbiguous);
-  const Ray fast{{0, 0, 3 - 0x1p-22F}, -1, {0, 0, 0x1p112F}, kInf};  // t = 2^-134, flushed to zero by some
-  CHECK(counts(judge_one(fast, hit_at(0x1p-134F, 0))) == kClean);
-  CHECK(counts(judge_one(fast, hit_at(0, 0))) == kClean);
-  CHECK(counts(judge_one(fast, hit_at(1, 0))) == kLost);
+TEST_CASE("what lies beyond the largest float is not met, and what devices flush is not held against them") {
+  const auto judge_in = [](const Triangle& wall, const Ray& ray, const Hit& hit) {
+    return counts(
+        gnomon::judge(std::vector<Triangle>{wall}, std::vector<Ray>{ray}, std::vector<Hit>{hit}, {}));
+  };
+  const Ray slow{{0, 0, 0}, 0, {0, 0, 0x1p-100F}, kInf};  // t = 2^130
+  CHECK(judge_in(wall_at(0x1p30F), slow, kMiss) == kClean);
+  CHECK(judge_in(wall_at(0x1p30F), slow, hit_at(kInf, 0)) == kFalse);
+  const Ray back{{0, 0, 0}, -kInf, {0, 0, -0x1p-100F}, kInf};
+  CHECK(judge_in(wall_at(0x1p30F), back, kMiss) == kClean);
+  CHECK(judge_in(wall_at(0x1p30F), back, hit_at(-kInf, 0)) == kFalse);
+  CHECK(judge_in(wall_at(0x1p27F), back, hit_at(-0x1p127F, 0)) == kClean);
+  const Ray brim{{0, 0, 0}, 0, {0, 0, 0x1.000002p-100F}, kInf};  // t = FLT_MAX but for rounding
+  CHECK(judge_in(wall_at(0x1p28F), brim, kMiss) == kAmbiguous);
+  const Ray fast{{0, 0, 0}, -1, {0, 0, 0x1p100F}, kInf};  // t = 2^-134, flushed to zero by some
+  CHECK(judge_in(wall_at(0x1p-34F), fast, hit_at(0x1p-134F, 0)) == kClean);
+  CHECK(judge_in(wall_at(0x1p-34F), fast, hit_at(0, 0)) == kClean);
+  CHECK(judge_in(wall_at(0x1p-34F), fast, hit_at(1, 0)) == kLost);
 }
 
 TEST_CASE("a hit that is nearer than any triangle, or where nothing is, is false") {

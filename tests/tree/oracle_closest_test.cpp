@@ -132,6 +132,13 @@ TEST_CASE("rays with NaN, infinite or zero parts and scenes without triangles gi
     return hit.primitive == GN_NONE && hit.t == kInf;
   };
   CHECK(misses(ray_of({0, 0, 0}, {0, 0, 0})));
+  const auto length = [&](float z) {
+    return gnomon::oracle_closest(ray_of({0, 0, 0}, {0, 1e-40F, z}), wall).t;
+  };
+  CHECK(misses(ray_of({0, 0, 0}, {0, 0, 0x1.fffffep-101F})));
+  CHECK(misses(ray_of({0, 0, 0}, {0, 0, 0x1.000002p100F})));
+  CHECK(length(0x1p-100F) == 0x1p101);
+  CHECK(length(0x1p100F) == 0x1p-99);
   for (const float bad : {kNan, kInf, -kInf}) {
     for (int axis = 0; axis < 3; ++axis) {
       Ray ray = good;

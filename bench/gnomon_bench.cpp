@@ -109,7 +109,10 @@ gnomon::Scene scene_from(const std::string& name, const Settings& settings) {
 class SceneBench {
  public:
   SceneBench(const gnomon::cl::Context& context, const Settings& settings, const std::string& name)
-      : context_(context), settings_(settings), options_(settings.options), scene_(scene_from(name, settings)) {
+      : context_(context),
+        settings_(settings),
+        options_(settings.options),
+        scene_(scene_from(name, settings)) {
     threads_ = settings.all_threads ? std::max(1U, std::thread::hardware_concurrency()) : 1;
     common_ = {{"schema", 1},
                {"bench", "gnomon"},

@@ -13,17 +13,17 @@
 __kernel void list_clusters(__global const GnCluster* remaining, __global const uint* first, __global GnCluster* clusters,
                             __global float* stand_ins, uint segments) {
   const uint segment = (uint)get_global_id(0);
-  uint i, k;
+  uint i;
   if (segment >= segments) return;
   for (i = first[segment]; i < first[segment + 1u]; ++i) {
-    const GnCluster cluster = remaining[segment * GN_SEGMENT_CLUSTERS + i - first[segment]];
+    __global const float* from = (__global const float*)(remaining + segment * GN_SEGMENT_CLUSTERS + i - first[segment]);
+    const float4 lo = vload4(0, from), hi = vload4(1, from);
     __global float* out = stand_ins + 9u * (size_t)i;
-    clusters[i] = cluster;
-    for (k = 0u; k < 3u; ++k) {
-      out[k] = cluster.lo[k];
-      out[3u + k] = cluster.hi[k];
-      out[6u + k] = cluster.lo[k];
-    }
+    vstore4(lo, 2u * i, (__global float*)clusters);
+    vstore4(hi, 2u * i + 1u, (__global float*)clusters);
+    vstore3(lo.xyz, 0, out);
+    vstore3(hi.xyz, 1, out);
+    vstore3(lo.xyz, 2, out);
   }
 }
 
@@ -53,14 +53,9 @@ static inline uint inner_below(__global const GnMerge* merges, uint place) {
   return is_triangle(place) ? 0u : merge_of(merges, place)->counts >> 16;
 }
 
-static inline void write_fast_node(__global GnNode* node, const float* lo, const float* hi, uint first, uint count) {
-  uint k;
-  for (k = 0u; k < 3u; ++k) {
-    node->lo[k] = lo[k];
-    node->hi[k] = hi[k];
-  }
-  node->first = first;
-  node->count = count;
+static inline void write_fast_node(__global GnNode* node, float4 lo, float4 hi, uint first, uint count) {
+  vstore4((float4)(lo.xyz, as_float(first)), 0, (__global float*)node);
+  vstore4((float4)(hi.xyz, as_float(count)), 1, (__global float*)node);
 }
 
 // Children of the k-th split between clusters, in the finished tree.
@@ -115,8 +110,7 @@ static inline uint depth_of_leaf(__global const GnNode* top, uint leaf) {
 }
 
 typedef struct GnAssembly {
-  __global const float* triangles;
-  __global const uint2* keys;
+  __global const GnLeafTriangle* triangles;  // in the curve's order
   __global const GnMerge* merges;
   __global GnNode* nodes;
   __global uint* order;
@@ -129,18 +123,17 @@ typedef struct GnAssembly {
 
 // Copies a triangle to its place in leaf order and, where it is a leaf by itself, writes that node.
 static inline void emit_triangle(const GnAssembly* tree, uint place, uint at, uint node) {
-  const uint triangle = tree->keys[(size_t)(place / (2u * GN_SEGMENT)) * GN_SEGMENT + (place & GN_NUMBER_MASK)].y;
-  __global const float* corners = tree->triangles + 9u * (size_t)triangle;
+  __global const float* from = (__global const float*)(tree->triangles + (size_t)(place / (2u * GN_SEGMENT)) * GN_SEGMENT +
+                                                       (place & GN_NUMBER_MASK));
   __global float* out = (__global float*)(tree->leaf_triangles + at);
-  const float3 a = vload3(0, corners), b = vload3(1, corners), c = vload3(2, corners);
-  tree->order[at] = triangle;
-  vstore4((float4)(a, as_float(triangle)), 0, out);
-  vstore4((float4)(b, 0.0f), 1, out);
-  vstore4((float4)(c, 0.0f), 2, out);
+  const float4 a = vload4(0, from), b = vload4(1, from), c = vload4(2, from);
+  tree->order[at] = as_uint(a.w);
+  vstore4(a, 0, out);
+  vstore4(b, 1, out);
+  vstore4(c, 2, out);
   if (node < GN_IN_LEAF) {
-    const GnBoxPair box = box_of_corners(a, b, c);
-    const float lo[3] = {box.lo.x, box.lo.y, box.lo.z}, hi[3] = {box.hi.x, box.hi.y, box.hi.z};
-    write_fast_node(tree->nodes + node, lo, hi, at, 1u);
+    const GnBoxPair box = box_of_corners(a.xyz, b.xyz, c.xyz);
+    write_fast_node(tree->nodes + node, box.lo, box.hi, at, 1u);
   }
 }
 
@@ -161,15 +154,16 @@ static inline uint emit_cluster(const GnAssembly* tree, uint root, uint at, uint
       split += node < GN_IN_LEAF;
       at += 1u;
     } else {
-      const GnMerge merge = *merge_of(tree->merges, place);
-      const uint left = child_place(place, merge.children, 0u);
-      const uint inner = node == GN_IN_LEAF ? 0u : merge.counts >> 16;
+      __global const float* merge = (__global const float*)merge_of(tree->merges, place);
+      const float4 lo = vload4(0, merge), hi = vload4(1, merge);
+      const uint left = child_place(place, as_uint(lo.w), 0u);
+      const uint inner = node == GN_IN_LEAF ? 0u : as_uint(hi.w) >> 16;
       const uint own = split + inner_below(tree->merges, left);
       const uint children = inner ? 1u + 2u * own : GN_IN_LEAF;
       if (node < GN_IN_LEAF)
-        write_fast_node(tree->nodes + node, merge.lo, merge.hi, inner ? children : at, inner ? 0u : merge.counts);
+        write_fast_node(tree->nodes + node, lo, hi, inner ? children : at, inner ? 0u : as_uint(hi.w));
       split += !inner && node < GN_IN_LEAF;  // behind each leaf but the last stands a split
-      places[height] = child_place(place, merge.children, 1u);
+      places[height] = child_place(place, as_uint(lo.w), 1u);
       nodes[height] = inner ? children + 1u : GN_IN_LEAF;
       depths[height] = depth + (inner ? 1u : 0u);
       places[height + 1u] = left;
@@ -182,13 +176,13 @@ static inline uint emit_cluster(const GnAssembly* tree, uint root, uint at, uint
 }
 
 // One work-item per `run` clusters in leaf order. deepest: of all leaves.
-__kernel void emit_clusters(__global const float* triangles, __global const uint2* keys, __global const GnMerge* merges,
+__kernel void emit_clusters(__global const GnLeafTriangle* triangles, __global const GnMerge* merges,
                             __global const GnCluster* clusters, __global const GnNode* top,
                             __global const uint* top_order, __global const uint* first_triangle,
                             __global const uint* first_split, __global GnNode* nodes, __global uint* order,
                             __global GnLeafTriangle* leaf_triangles, volatile __global uint* deepest, uint count,
                             uint run) {
-  const GnAssembly tree = {triangles, keys, merges, nodes, order, leaf_triangles};
+  const GnAssembly tree = {triangles, merges, nodes, order, leaf_triangles};
   const uint begin = min(count, (uint)get_global_id(0) * run);
   const uint end = begin + min(count - begin, run);
   uint i, depth = 0u;

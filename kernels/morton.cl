@@ -14,10 +14,9 @@ __kernel void bound_centroids(__global const float* triangles, __global GnBounds
   GnBoxPair centroids = empty_pair();
   uint i;
   for (i = begin + GN_LOCAL_ID; i < end; i += GN_WGS) {
-    __global const float* corners = triangles + 9u * (size_t)i;
-    const float3 a = vload3(0, corners), b = vload3(1, corners), c = vload3(2, corners);
-    const GnBoxPair box = box_of_corners(a, b, c);
-    if (!is_traceable(a) || !is_traceable(b) || !is_traceable(c)) atomic_min(first_bad, i);
+    const GnCorners corners = corners_of(triangles, i);
+    const GnBoxPair box = box_of_corners(corners.a, corners.b, corners.c);
+    if (!is_traceable(corners.a) || !is_traceable(corners.b) || !is_traceable(corners.c)) atomic_min(first_bad, i);
     centroids.lo = GN_VMIN(box.lo + box.hi, centroids.lo);
     centroids.hi = GN_VMAX(box.lo + box.hi, centroids.hi);
   }
@@ -36,7 +35,8 @@ __kernel void assign_codes(__global const float* triangles, __global uint2* keys
   uint i;
   for (i = begin + GN_LOCAL_ID; i < end; i += GN_WGS) {
     const uint triangle = again ? keys[i].y : i;
-    const GnBoxPair box = box_of_triangle(triangles, triangle);
+    const GnCorners corners = corners_of(triangles, triangle);
+    const GnBoxPair box = box_of_corners(corners.a, corners.b, corners.c);
     const float4 c = box.lo + box.hi;
     keys[i] = (uint2)(gn_morton_code(frame, c.x, c.y, c.z, (int)fine), triangle);
   }

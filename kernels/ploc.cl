@@ -9,37 +9,45 @@
 #define GN_BEFORE 8u
 #define GN_PLACES (GN_SEGMENT + 2u * GN_BEFORE)
 
-// Clusters in their order on the curve. planes: lower x, y, z, upper x, y, z, from GN_BEFORE on.
+// Triangles that are sent for before they are needed.
+#define GN_AHEAD 16u
+
+// Clusters in their order on the curve. boxes: lower corner with what it counts (gn_merge_counts), upper corner with its
+// cost. planes: the same corners for those who look at many clusters at once: lower x, y, z, upper x, y, z, each from
+// GN_BEFORE on.
 typedef struct GnClusters {
+  __local float* boxes;
   __local float* planes;
-  __local uint* numbers;
-  __local uint* counts;
-  __local float* costs;
-  __local uint* partners;
+  __local ushort* numbers;
+  __local ushort* partners;
 } GnClusters;
 
-// One cluster on its way from place to place.
+// One cluster on its way from place to place. Lanes w as in boxes.
 typedef struct GnMoving {
-  float lo[3];
-  float hi[3];
+  float4 lo;
+  float4 hi;
   uint number;
-  uint counts;
-  float cost;
 } GnMoving;
 
 static inline __local float* plane_of(const GnClusters* clusters, uint plane) {
   return clusters->planes + plane * GN_PLACES + GN_BEFORE;
 }
 
-static inline void put_cluster(const GnClusters* clusters, uint place, const GnMoving* cluster) {
-  uint k;
-  for (k = 0u; k < 3u; ++k) {
-    plane_of(clusters, k)[place] = cluster->lo[k];
-    plane_of(clusters, 3u + k)[place] = cluster->hi[k];
-  }
-  clusters->numbers[place] = cluster->number;
-  clusters->counts[place] = cluster->counts;
-  clusters->costs[place] = cluster->cost;
+static inline void put_cluster(const GnClusters* clusters, uint place, GnMoving cluster) {
+  vstore4(cluster.lo, 2u * place, clusters->boxes);
+  vstore4(cluster.hi, 2u * place + 1u, clusters->boxes);
+  plane_of(clusters, 0u)[place] = cluster.lo.x;
+  plane_of(clusters, 1u)[place] = cluster.lo.y;
+  plane_of(clusters, 2u)[place] = cluster.lo.z;
+  plane_of(clusters, 3u)[place] = cluster.hi.x;
+  plane_of(clusters, 4u)[place] = cluster.hi.y;
+  plane_of(clusters, 5u)[place] = cluster.hi.z;
+  clusters->numbers[place] = (ushort)cluster.number;
+}
+
+static inline float half_area_of(float4 lo, float4 hi) {
+  const float l[3] = {lo.x, lo.y, lo.z}, h[3] = {hi.x, hi.y, hi.z};
+  return gn_surface_measure(l, h);
 }
 
 // Boxes so large that nothing is farther than they are, on both sides of the clusters.
@@ -109,74 +117,90 @@ static inline void choose_partners(const GnClusters* clusters, uint count, uint 
   uint i;
   if (round < GN_FREE_ROUNDS) {
     for (i = GN_LOCAL_ID; i < count; i += GN_WGS)
-      clusters->partners[i] = gn_pair_partner(nearest_of(clusters, i), i);
+      clusters->partners[i] = (ushort)gn_pair_partner(nearest_of(clusters, i), i);
   } else {
-    for (i = GN_LOCAL_ID; i < count; i += GN_WGS) clusters->partners[i] = (i ^ 1u) < count ? i ^ 1u : i;
+    for (i = GN_LOCAL_ID; i < count; i += GN_WGS) clusters->partners[i] = (ushort)((i ^ 1u) < count ? i ^ 1u : i);
   }
 }
 
-// What stands at a place after this round: the cluster itself, or it and its partner as one (merges), which gets the
-// number given. The later one of two that merge is no more (stays == 0).
+// What stands at a place after this round: the cluster itself, or it and its partner as one (joins == 1), which gets the
+// number given and whose merge is `record`'s corners. The later one of two that merge is no more (stays == 0).
 static inline GnMoving after_round(const GnClusters* clusters, uint place, uint next_merge, GnLeafRule rule,
-                                   GnMerge* record, uint* stays, uint* merges) {
+                                   float4* record_lo, float4* record_hi, uint* stays, uint* joins) {
   const uint chosen = clusters->partners[place];
   const uint mutual = clusters->partners[chosen] == place;
-  const uint joins = mutual & (uint)(chosen > place);
-  const uint partner = joins ? chosen : place;
-  const uint number = clusters->numbers[place], counts = clusters->counts[place];
-  const float cost = clusters->costs[place];
+  const uint joining = mutual & (uint)(chosen > place);
+  const uint partner = joining ? chosen : place;
+  const uint number = clusters->numbers[place];
+  const float4 lo = vload4(2u * place, clusters->boxes), hi = vload4(2u * place + 1u, clusters->boxes);
+  const float4 other_lo = vload4(2u * partner, clusters->boxes), other_hi = vload4(2u * partner + 1u, clusters->boxes);
   GnMoving out;
-  float joined_cost;
-  uint k, joined_counts;
-  for (k = 0u; k < 3u; ++k) {
-    out.lo[k] = gn_min(plane_of(clusters, k)[place], plane_of(clusters, k)[partner]);
-    out.hi[k] = gn_max(plane_of(clusters, 3u + k)[place], plane_of(clusters, 3u + k)[partner]);
-    record->lo[k] = out.lo[k];
-    record->hi[k] = out.hi[k];
-  }
-  joined_counts = gn_merge_counts(rule, gn_surface_measure(out.lo, out.hi), cost + clusters->costs[partner], counts,
-                                  clusters->counts[partner], &joined_cost);
-  record->children = number | clusters->numbers[partner] << 16;
-  record->counts = joined_counts;
-  out.number = joins ? next_merge : number;
-  out.counts = joins ? joined_counts : counts;
-  out.cost = joins ? joined_cost : cost;
+  float cost;
+  out.lo = GN_VMIN(lo, other_lo);
+  out.hi = GN_VMAX(hi, other_hi);
+  const uint counts = gn_merge_counts(rule, half_area_of(out.lo, out.hi), hi.w + other_hi.w, as_uint(lo.w),
+                                      as_uint(other_lo.w), &cost);
+  *record_lo = (float4)(out.lo.xyz, as_float(number | (uint)clusters->numbers[partner] << 16));
+  *record_hi = (float4)(out.hi.xyz, as_float(counts));
+  out.lo.w = joining ? as_float(counts) : lo.w;
+  out.hi.w = joining ? cost : hi.w;
+  out.number = joining ? next_merge : number;
   *stays = 1u ^ (mutual & (uint)(chosen < place));
-  *merges = joins;
+  *joins = joining;
   return out;
 }
 
-// The clusters of a segment, one a triangle.
+static inline void store_merge(__global GnMerge* merge, float4 lo, float4 hi) {
+  vstore4(lo, 0, (__global float*)merge);
+  vstore4(hi, 1, (__global float*)merge);
+}
+
+// The clusters of a segment, one a triangle, whose corners go to the segment's place in the curve's order.
 static inline void load_clusters(const GnClusters* clusters, __global const float* triangles, __global const uint2* keys,
-                                 uint count, GnLeafRule rule) {
+                                 __global GnLeafTriangle* sorted, uint count, GnLeafRule rule) {
   uint i;
+#if GN_WGS == 1
+  for (i = 0u; i < min(count, GN_AHEAD); ++i) expect_triangle(triangles, keys[i].y);
+#endif
   for (i = GN_LOCAL_ID; i < count; i += GN_WGS) {
-    const GnBoxPair box = box_of_triangle(triangles, keys[i].y);
-    GnMoving cluster = {{box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z}, i, 1u, 0.0f};
-    cluster.cost = gn_triangle_cost(rule, gn_surface_measure(cluster.lo, cluster.hi));
-    put_cluster(clusters, i, &cluster);
+    const uint triangle = keys[i].y;
+    const GnCorners corners = corners_of(triangles, triangle);
+    const GnBoxPair box = box_of_corners(corners.a, corners.b, corners.c);
+    __global float* out = (__global float*)(sorted + i);
+    GnMoving cluster;
+#if GN_WGS == 1
+    expect_triangle(triangles, keys[min(i + GN_AHEAD, count - 1u)].y);
+#endif
+    vstore4((float4)(corners.a, as_float(triangle)), 0, out);
+    vstore4((float4)(corners.b, 0.0f), 1, out);
+    vstore4((float4)(corners.c, 0.0f), 2, out);
+    cluster.lo = (float4)(box.lo.xyz, as_float(1u));
+    cluster.hi = (float4)(box.hi.xyz, gn_triangle_cost(rule, half_area_of(box.lo, box.hi)));
+    cluster.number = i;
+    put_cluster(clusters, i, cluster);
   }
 }
 
-// One work-group per segment. keys: sorted. merges: GN_SEGMENT for each segment. remaining: GN_SEGMENT_CLUSTERS for each,
+// One work-group per segment. keys: sorted. sorted: receives the triangles in the curve's order. merges: GN_SEGMENT for each segment. remaining: GN_SEGMENT_CLUSTERS for each,
 // remaining_counts says how many of them there are.
-__kernel void merge_segments(__global const float* triangles, __global const uint2* keys, __global GnMerge* merges,
-                             __global GnCluster* remaining, __global uint* remaining_counts, uint count,
+__kernel void merge_segments(__global const float* triangles, __global const uint2* keys,
+                             __global GnLeafTriangle* sorted, __global GnMerge* merges, __global GnCluster* remaining, __global uint* remaining_counts, uint count,
                              float cost_traversal, float cost_triangle, uint max_leaf_size) {
+  __local float boxes[8 * GN_SEGMENT] __attribute__((aligned(32)));
   __local float planes[6 * GN_PLACES];
-  __local uint numbers[GN_SEGMENT], counts[GN_SEGMENT], partners[GN_SEGMENT];
-  __local float costs[GN_SEGMENT];
+  __local ushort numbers[GN_SEGMENT], partners[GN_SEGMENT];
 #if GN_WGS > 1
   __local uint sums[GN_WGS];
 #endif
-  const GnClusters clusters = {planes, numbers, counts, costs, partners};
+  const GnClusters clusters = {boxes, planes, numbers, partners};
   const GnLeafRule rule = {cost_traversal, cost_triangle, max_leaf_size};
   const uint segment = (uint)get_group_id(0);
   const uint size = min(count - segment * GN_SEGMENT, GN_SEGMENT);
   const uint few = (size + GN_PER_CLUSTER - 1u) / GN_PER_CLUSTER;
-  uint height = size, merged = 0u, round, i, k;
+  uint height = size, merged = 0u, round, i;
   merges += (size_t)segment * GN_SEGMENT;
-  load_clusters(&clusters, triangles, keys + (size_t)segment * GN_SEGMENT, size, rule);
+  load_clusters(&clusters, triangles, keys + (size_t)segment * GN_SEGMENT,
+                sorted + (size_t)segment * GN_SEGMENT, size, rule);
   // Each round merges two at least, so all are over by then.
   for (round = 0u; round < GN_SEGMENT && height > few; ++round) {
     uint kept = 0u;
@@ -186,29 +210,28 @@ __kernel void merge_segments(__global const float* triangles, __global const uin
     GN_GROUP_BARRIER();
 #if GN_WGS == 1
     for (i = 0u; i < height; ++i) {
-      GnMerge record;
+      float4 lo, hi;
       uint stays, joins;
-      const GnMoving cluster = after_round(&clusters, i, GN_SEGMENT + merged, rule, &record, &stays, &joins);
-      merges[merged] = record;
-      put_cluster(&clusters, kept, &cluster);
+      const GnMoving cluster = after_round(&clusters, i, GN_SEGMENT + merged, rule, &lo, &hi, &stays, &joins);
+      store_merge(merges + merged, lo, hi);
+      put_cluster(&clusters, kept, cluster);
       kept += stays;
       merged += joins;
     }
 #else
     for (i = 0u; i < height; i += GN_WGS) {
       const uint place = i + GN_LOCAL_ID;
-      const uint here = place < height ? place : 0u;
-      GnMerge record;
-      GnMoving cluster;
+      float4 lo, hi;
       uint stays, joins, before;
-      cluster = after_round(&clusters, here, 0u, rule, &record, &stays, &joins);
+      GnMoving cluster =
+          after_round(&clusters, place < height ? place : 0u, 0u, rule, &lo, &hi, &stays, &joins);
       if (place >= height) stays = joins = 0u;
       before = group_sum_before(stays | joins << 16, sums);
       if (joins) {
         cluster.number = GN_SEGMENT + merged + (before >> 16);
-        merges[merged + (before >> 16)] = record;
+        store_merge(merges + merged + (before >> 16), lo, hi);
       }
-      if (stays) put_cluster(&clusters, kept + (before & 0xffffu), &cluster);
+      if (stays) put_cluster(&clusters, kept + (before & 0xffffu), cluster);
       // What the last work-item counted tells what all did.
       if (GN_LOCAL_ID == GN_WGS - 1u) sums[0] = before + (stays | joins << 16);
       GN_GROUP_BARRIER();
@@ -220,13 +243,10 @@ __kernel void merge_segments(__global const float* triangles, __global const uin
     height = kept;
   }
   for (i = GN_LOCAL_ID; i < height; i += GN_WGS) {
-    __global GnCluster* out = remaining + (size_t)segment * GN_SEGMENT_CLUSTERS + i;
-    for (k = 0u; k < 3u; ++k) {
-      out->lo[k] = plane_of(&clusters, k)[i];
-      out->hi[k] = plane_of(&clusters, 3u + k)[i];
-    }
-    out->place = segment * 2u * GN_SEGMENT + numbers[i];
-    out->counts = counts[i];
+    __global float* out = (__global float*)(remaining + (size_t)segment * GN_SEGMENT_CLUSTERS + i);
+    const float4 lo = vload4(2u * i, boxes), hi = vload4(2u * i + 1u, boxes);
+    vstore4((float4)(lo.xyz, as_float(segment * 2u * GN_SEGMENT + numbers[i])), 0, out);
+    vstore4((float4)(hi.xyz, lo.w), 1, out);
   }
   if (GN_LOCAL_ID == 0u) remaining_counts[segment] = height;
 }

@@ -24,9 +24,29 @@ static inline GnBoxPair box_of_corners(float3 a, float3 b, float3 c) {
   return box;
 }
 
-static inline GnBoxPair box_of_triangle(__global const float* triangles, uint triangle) {
-  __global const float* corners = triangles + 9u * (size_t)triangle;
-  return box_of_corners(vload3(0, corners), vload3(1, corners), vload3(2, corners));
+typedef struct GnCorners {
+  float3 a;
+  float3 b;
+  float3 c;
+} GnCorners;
+
+// Three loads of four floats, none of them beyond the nine.
+static inline GnCorners corners_of(__global const float* triangles, uint triangle) {
+  __global const float* at = triangles + 9u * (size_t)triangle;
+  GnCorners corners;
+  corners.a = vload4(0, at).xyz;
+  corners.b = vload4(0, at + 3).xyz;
+  corners.c = vload4(0, at + 5).yzw;
+  return corners;
+}
+
+// Says that the triangle will be read soon, where the compiler has a way to: those along the curve are far apart.
+static inline void expect_triangle(__global const float* triangles, uint triangle) {
+#if defined(POCL_DEVICE_ADDRESS_BITS) && defined(__x86_64__)
+  const uintptr_t at = (uintptr_t)(triangles + 9u * (size_t)triangle);
+  __builtin_prefetch((const void*)at);
+  __builtin_prefetch((const void*)(at + 32u));
+#endif
 }
 
 #endif

@@ -62,8 +62,8 @@ int run(const Options& options, Console& console) {
   add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
   console.print(document);
-  console.print(facts_of(context.device(), scene, options, describe(options.heuristic, tree, scene), build) + "\n" +
-                stage_table(build));
+  console.print(facts_of(context.device(), scene, options, describe(options.heuristic, tree, scene), build) +
+                "\n" + stage_table(build));
   return 0;
 }
 
@@ -81,7 +81,8 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(
-      "Binned over all three axes, unless --builder says otherwise. The tree depends on the triangles and the options under \"Tree\" and "
+      "Binned over all three axes, unless --builder says otherwise. The tree depends on the triangles and "
+      "the options under \"Tree\" and "
       "\"Rays\"\n"
       "alone: its hash is the same on every device. Times by stage are the device's own; the total is wall "
       "clock\n"

@@ -36,8 +36,8 @@ struct FastPlan {
   }
 };
 
-// Turns that one work-item of merge_segments takes at most: all rounds' clusters, twice, with what a cooperative
-// group's items do together.
+// Turns that one work-item of merge_segments takes at most: all rounds' clusters, twice, with what a
+// cooperative group's items do together.
 constexpr std::uint32_t kTurnsPerCluster = 32;
 
 void heed_loop_limit(const FastPlan& plan, const cl::DeviceInfo& device) {
@@ -46,10 +46,10 @@ void heed_loop_limit(const FastPlan& plan, const cl::DeviceInfo& device) {
       std::max({std::uint64_t{GN_SEGMENT} * kTurnsPerCluster, std::uint64_t{plan.sort.chunk_size},
                 2 * plan.most_clusters(), std::uint64_t{plan.sort.chunks()} << plan.sort.digit_bits});
   if (limit == 0 || longest <= limit) return;
-  throw Error(ErrorCode::kInvalidArgument,
-              device.name + " ends loops after " + std::to_string(limit) +
-                  " turns, too few for builder fast and " + std::to_string(plan.count) +
-                  " triangles; use builder balanced or another device");
+  throw Error(ErrorCode::kInvalidArgument, device.name + " ends loops after " + std::to_string(limit) +
+                                               " turns, too few for builder fast and " +
+                                               std::to_string(plan.count) +
+                                               " triangles; use builder balanced or another device");
 }
 
 FastPlan plan_fast(const cl::DeviceInfo& device, std::uint64_t count, const BuildOptions& options) {
@@ -74,6 +74,7 @@ std::vector<BufferNeed> own_buffers(const FastPlan& plan) {
       {"keys", n * sizeof(GnMortonKey), true},
       {"spare_keys", n * sizeof(GnMortonKey), true},
       {"digits", plan.sort.table_bytes(), true},
+      {"sorted_triangles", n * sizeof(GnLeafTriangle), true},
       {"merges", std::uint64_t{plan.segments()} * GN_SEGMENT * sizeof(GnMerge), true},
       {"remaining", std::uint64_t{plan.segments()} * GN_SEGMENT_CLUSTERS * sizeof(GnCluster), true},
       {"first_clusters", (plan.segments() + 1ULL) * sizeof(std::uint32_t), true},
@@ -118,8 +119,7 @@ class FastBuilder {
   template <typename... Arguments>
   void launch(const char* stage, const char* name, std::size_t global, std::size_t local,
               const Arguments&... arguments) {
-    const cl::Handle<cl_kernel> kernel =
-        context_.programs().kernel(kSources, plan_.program_options(), name);
+    const cl::Handle<cl_kernel> kernel = context_.programs().kernel(kSources, plan_.program_options(), name);
     cl::set_arguments(kernel.get(), arguments...);
     times_.add(stage, cl::enqueue(context_.queue(), kernel.get(), global, local));
   }
@@ -179,10 +179,11 @@ class FastBuilder {
 
   void merge() {
     const std::uint32_t segments = plan_.segments();
+    sorted_ = allocate("sorted_triangles");
     merges_ = allocate("merges");
     const cl::Buffer remaining = allocate("remaining");
     const cl::Buffer first = allocate("first_clusters");
-    launch_groups("merge", "merge_segments", segments, triangles_, keys_, merges_, remaining, first,
+    launch_groups("merge", "merge_segments", segments, triangles_, keys_, sorted_, merges_, remaining, first,
                   plan_.count, options_.cost_traversal, options_.cost_triangle, options_.max_leaf_size);
     scan(first, segments);
     cluster_count_ = context_.download_values<std::uint32_t>(first, 1, segments).front();
@@ -212,8 +213,8 @@ class FastBuilder {
     context_.fill(deepest, 0);
     const std::size_t items = (m + plan_.cluster_run - 1) / plan_.cluster_run;
     const std::size_t local = plan_.work_group_size == 1 ? 1 : plan_.item_group_size;
-    launch("assemble", "emit_clusters", (items + local - 1) / local * local, local, triangles_, keys_,
-           merges_, clusters_, top.nodes, top.order, first_triangle, first_split, tree.nodes, tree.order,
+    launch("assemble", "emit_clusters", (items + local - 1) / local * local, local, sorted_, merges_,
+           clusters_, top.nodes, top.order, first_triangle, first_split, tree.nodes, tree.order,
            tree.leaf_triangles, deepest, m, plan_.cluster_run);
     tree.max_depth = context_.download_values<std::uint32_t>(deepest, 1).front();
     return tree;
@@ -234,7 +235,7 @@ class FastBuilder {
   std::map<std::string, std::uint64_t> sizes_;
   cl::StageTimes times_;
   std::uint32_t cluster_count_ = 0;
-  cl::Buffer keys_, spare_keys_, merges_, clusters_, stand_ins_;
+  cl::Buffer keys_, spare_keys_, sorted_, merges_, clusters_, stand_ins_;
 };
 
 }  // namespace
@@ -243,8 +244,7 @@ std::vector<BufferNeed> fast_memory(const cl::DeviceInfo& device, std::uint64_t 
                                     const BuildOptions& options) {
   const FastPlan plan = plan_fast(device, count, options);
   std::vector<BufferNeed> needs = own_buffers(plan);
-  for (BufferNeed& need :
-       build_memory(device, plan.most_clusters(), options_over_clusters(options))) {
+  for (BufferNeed& need : build_memory(device, plan.most_clusters(), options_over_clusters(options))) {
     if (need.name == "triangles") continue;  // the stand-ins
     needs.push_back({"clusters: " + need.name, need.bytes, true});
   }

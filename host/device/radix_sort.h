@@ -1,5 +1,5 @@
-// A stable radix sort of pairs on a device (kernels/radix_sort.cl), and its prefix sum by itself. Feeds the fast
-// builder.
+// A stable radix sort of pairs on a device (kernels/radix_sort.cl), and its prefix sum by itself. Feeds the
+// fast builder.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,8 @@ struct SortPlan {
                                  std::uint32_t work_group_size, std::uint32_t chunk_size);
 
 // Sorts plan.count pairs (uint2: key, value) by the lowest `bits` of their keys; equal keys stay in order. On
-// return `pairs` holds them and `spare`, of the same size, anything. table: plan.table_bytes(). Enqueues only.
+// return `pairs` holds them and `spare`, of the same size, anything. table: plan.table_bytes(). Enqueues
+// only.
 void radix_sort(const cl::Context& context, const SortPlan& plan, cl::Buffer& pairs, cl::Buffer& spare,
                 const cl::Buffer& table, std::uint32_t bits, cl::StageTimes& times);
 

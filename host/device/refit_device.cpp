@@ -27,10 +27,10 @@ class Refit {
       : context_(context), count_(static_cast<std::uint32_t>(triangles.size())) {
     const cl::DeviceInfo& device = context.device();
     if (device.loop_limit != 0 && count_ * kTurnsPerTriangle > device.loop_limit) {
-      throw Error(ErrorCode::kInvalidArgument,
-                  device.name + " ends loops after " + std::to_string(device.loop_limit) +
-                      " turns, too few to refit a tree of " + std::to_string(count_) +
-                      " triangles; build a new one");
+      throw Error(ErrorCode::kInvalidArgument, device.name + " ends loops after " +
+                                                   std::to_string(device.loop_limit) +
+                                                   " turns, too few to refit a tree of " +
+                                                   std::to_string(count_) + " triangles; build a new one");
     }
     triangles_ = context.create_buffer("triangles", triangles.size_bytes());
     context.upload_values<Triangle>(triangles_, triangles);
@@ -83,7 +83,8 @@ class Refit {
     const cl::Handle<cl_kernel> kernel = context_.programs().kernel(sources, options, name);
     cl::set_arguments(kernel.get(), arguments...);
     // On CPUs one to a group: PoCL gives each item of a group its own copy of a kernel's stack.
-    const std::size_t widest = std::max<std::uint64_t>(1, std::min<std::uint64_t>(64, context_.device().max_work_group));
+    const std::size_t widest =
+        std::max<std::uint64_t>(1, std::min<std::uint64_t>(64, context_.device().max_work_group));
     const std::size_t local = items == 1 || context_.device().is_cpu ? 1 : widest;
     last_ = cl::enqueue(context_.queue(), kernel.get(), (items + local - 1) / local * local, local);
   }

@@ -21,10 +21,9 @@ struct SplitTally {
   std::array<std::uint64_t, 3> fallback_on{};  // inner nodes whose policy ended with the fallback on x, y, z
 };
 
-// Top-down binned SAH over all three axes (Wald 2007) with the constants of `options`, or what options.builder
-// says (build_fast_reference.h).
-// Throws Error: kInvalidArgument (options), kBadScene (a coordinate that is not finite or beyond 2^48; names
-// the triangle). `tally`, if given, is added to.
+// Top-down binned SAH over all three axes (Wald 2007) with the constants of `options`, or what
+// options.builder says (build_fast_reference.h). Throws Error: kInvalidArgument (options), kBadScene (a
+// coordinate that is not finite or beyond 2^48; names the triangle). `tally`, if given, is added to.
 [[nodiscard]] Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& options = {},
                                   SplitTally* tally = nullptr);
 

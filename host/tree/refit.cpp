@@ -126,7 +126,8 @@ void refit_reference(Bvh& bvh, std::span<const GnTriangle> triangles) {
     Node& node = bvh.nodes[*index];
     gn_empty_box(node.lo, node.hi);
     for (std::uint32_t i = 0; i < node.count; ++i) grow(node, boxes[bvh.primitives[node.first + i]]);
-    for (std::uint32_t side = 0; side < 2 && node.count == 0; ++side) grow(node, bvh.nodes[node.first + side]);
+    for (std::uint32_t side = 0; side < 2 && node.count == 0; ++side)
+      grow(node, bvh.nodes[node.first + side]);
   }
 }
 

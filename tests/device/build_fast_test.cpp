@@ -127,7 +127,8 @@ TEST_CASE("a fast build reports its stages and a memory query that holds", "[fas
   std::vector<std::string> names;
   for (const auto& [name, ms] : report.stages) names.push_back(name);
   if (context().profiles()) {
-    REQUIRE(names == std::vector<std::string>{"bound", "codes", "sort", "merge", "assemble", "tree over clusters"});
+    REQUIRE(names ==
+            std::vector<std::string>{"bound", "codes", "sort", "merge", "assemble", "tree over clusters"});
   }
   std::uint64_t stays = 0;
   std::uint64_t scratch = 0;

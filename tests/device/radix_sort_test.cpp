@@ -1,4 +1,5 @@
-// The radix sort and its prefix sum: sorted, stable, by the bits asked for, in both flavours and at chunks' edges.
+// The radix sort and its prefix sum: sorted, stable, by the bits asked for, in both flavours and at chunks'
+// edges.
 #include <algorithm>
 #include <catch2/catch.hpp>
 

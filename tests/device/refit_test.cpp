@@ -1,5 +1,5 @@
-// Refitted trees: unmoved triangles change no byte, moved ones give the reference's bytes, boxes as check_bvh and
-// check_wide compute them anew, and the oracle's hits.
+// Refitted trees: unmoved triangles change no byte, moved ones give the reference's bytes, boxes as check_bvh
+// and check_wide compute them anew, and the oracle's hits.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -44,8 +44,7 @@ void require_refitted(const Triangles& before, const Triangles& after, const gno
   if (const auto fault = gnomon::check_bvh(refitted, after, options)) FAIL(fault->what);
   gnomon::refit_reference(expected, after);
   REQUIRE(tree_hash(refitted) == tree_hash(expected));
-  const auto corners =
-      context().download_values<GnLeafTriangle>(tree.leaf_triangles, before.size());
+  const auto corners = context().download_values<GnLeafTriangle>(tree.leaf_triangles, before.size());
   for (std::size_t i = 0; i < corners.size(); ++i) {
     CAPTURE(i);
     REQUIRE(corners[i].primitive == refitted.primitives[i]);
@@ -77,7 +76,8 @@ TEST_CASE("a refitted tree has the boxes of its moved triangles, and its own whe
   }
 }
 
-TEST_CASE("a refitted wide tree has them too, and its slots in order of area", "[portable][unlimited][refit]") {
+TEST_CASE("a refitted wide tree has them too, and its slots in order of area",
+          "[portable][unlimited][refit]") {
   for (const auto& shape : gnomon::test::wide_shapes()) {
     CAPTURE(shape.name);
     require_refitted_wide(shape.triangles, moved(shape.triangles, 122), shape.options);

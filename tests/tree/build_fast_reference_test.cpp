@@ -1,5 +1,5 @@
-// The fast builder's reference: sound trees from every awkward input, the curve's order, bounded depth, and the
-// rules that make rounds end.
+// The fast builder's reference: sound trees from every awkward input, the curve's order, bounded depth, and
+// the rules that make rounds end.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
@@ -58,7 +58,8 @@ TEST_CASE("segments' edges make no difference to soundness") {
 TEST_CASE("the curve goes through eight cells in Morton order, equal ones by number") {
   Triangles corners;
   for (int i = 7; i >= 0; --i) {
-    corners.push_back(point(static_cast<float>(i >> 2 & 1), static_cast<float>(i >> 1 & 1), static_cast<float>(i & 1)));
+    corners.push_back(
+        point(static_cast<float>(i >> 2 & 1), static_cast<float>(i >> 1 & 1), static_cast<float>(i & 1)));
     corners.push_back(corners.back());
   }
   REQUIRE(gnomon::morton_order(corners) ==

@@ -2,6 +2,7 @@
 // one cluster a leaf) each of its leaves is replaced by its cluster. A cluster with i inner nodes has i splits; between
 // two clusters stands one more, so that prefix sums over the clusters in leaf order tell every node's number. Not for
 // merging (ploc.cl).
+#include "ahead.h"
 #include "shared/fast_math.h"
 #include "triangle_box.h"
 
@@ -27,14 +28,15 @@ __kernel void list_clusters(__global const GnCluster* remaining, __global const 
   }
 }
 
-// One work-item per cluster in leaf order: its triangles and its splits with the one behind it.
+// One work-item per cluster in leaf order: its triangles, its splits with the one behind it, and the cluster's leaf.
 __kernel void measure_clusters(__global const GnCluster* clusters, __global const uint* order, __global uint* triangles,
-                               __global uint* splits, uint count) {
+                               __global uint* splits, __global uint* leaves, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
   const uint counts = clusters[order[i]].counts;
   triangles[i] = counts & 0xffffu;
   splits[i] = (counts >> 16) + 1u;
+  leaves[order[i]] = i;
 }
 
 // Merges of all segments, told apart by a cluster's place.
@@ -175,20 +177,34 @@ static inline uint emit_cluster(const GnAssembly* tree, uint root, uint at, uint
   return deepest;
 }
 
-// One work-item per `run` clusters in leaf order. deepest: of all leaves.
+// What emit_cluster reads of a segment.
+static inline void expect_segment(const GnAssembly* tree, uint segment, uint segments) {
+  if (segment >= segments) return;
+  expect_range(tree->merges + (size_t)segment * GN_SEGMENT, GN_SEGMENT * sizeof(GnMerge));
+  expect_range(tree->triangles + (size_t)segment * GN_SEGMENT, GN_SEGMENT * sizeof(GnLeafTriangle));
+}
+
+// One work-item per `run` clusters, in the order of segments: a segment's are read together. leaves: of the clusters, in
+// the tree over them. deepest: of all leaves.
 __kernel void emit_clusters(__global const GnLeafTriangle* triangles, __global const GnMerge* merges,
-                            __global const GnCluster* clusters, __global const GnNode* top,
-                            __global const uint* top_order, __global const uint* first_triangle,
-                            __global const uint* first_split, __global GnNode* nodes, __global uint* order,
-                            __global GnLeafTriangle* leaf_triangles, volatile __global uint* deepest, uint count,
-                            uint run) {
+                            __global const GnCluster* clusters, __global const GnNode* top, __global const uint* leaves,
+                            __global const uint* first_triangle, __global const uint* first_split,
+                            __global GnNode* nodes, __global uint* order, __global GnLeafTriangle* leaf_triangles,
+                            volatile __global uint* deepest, uint count, uint segments, uint run) {
   const GnAssembly tree = {triangles, merges, nodes, order, leaf_triangles};
   const uint begin = min(count, (uint)get_global_id(0) * run);
   const uint end = begin + min(count - begin, run);
-  uint i, depth = 0u;
+  uint i, depth = 0u, segment = GN_NONE;
   for (i = begin; i < end; ++i) {
-    const uint below = emit_cluster(&tree, clusters[top_order[i]].place, first_triangle[i], first_split[i]);
-    depth = max(depth, below + depth_of_leaf(top, i));
+    const uint place = clusters[i].place, leaf = leaves[i];
+    uint below;
+    if (run > 1u && place / (2u * GN_SEGMENT) != segment) {
+      if (segment == GN_NONE) expect_segment(&tree, place / (2u * GN_SEGMENT), segments);
+      segment = place / (2u * GN_SEGMENT);
+      expect_segment(&tree, segment + 1u, segments);
+    }
+    below = emit_cluster(&tree, place, first_triangle[leaf], first_split[leaf]);
+    depth = max(depth, below + depth_of_leaf(top, leaf));
   }
   if (begin < end) atomic_max(deepest, depth);
 }

@@ -2,6 +2,7 @@
 // what collapsing them costs, then writes wide nodes and triangle blocks from the root down. A wide node's children
 // that are nodes lie side by side, what is below them follows child by child: numbers depend on the tree alone, not
 // on the cuts. One work-item a subtree throughout. Options: GN_COLLAPSE_DEPTH, above the binary tree's depth.
+#include "ahead.h"
 #include "shared/collapse_math.h"
 
 #ifndef GN_COLLAPSE_DEPTH
@@ -258,6 +259,27 @@ static inline uint triangles_below(const GnTree* tree, uint node) {
   return gn_forest_of(tree->nodes, tree->forests, node, tree->costs.block).triangles;
 }
 
+// What the wide nodes of a subtree are made from: its splits have neighbouring ranks, its triangles neighbouring places.
+static inline void expect_subtree(const GnTree* tree, uint root, int triangles) {
+  uint left = root, right = root, first, last;
+  if (tree->nodes[root].count > 0u) return;
+  do {
+    first = tree->nodes[left].first;
+    left = first;
+  } while (tree->nodes[left].count == 0u);
+  do {
+    last = tree->nodes[right].first;
+    right = last + 1u;
+  } while (tree->nodes[right].count == 0u);
+  expect_range(tree->nodes + first, (last + 2u - first) * sizeof(GnNode));
+  expect_range(tree->forests + (first - 1u) / 2u, ((last - first) / 2u + 1u) * sizeof(GnForest));
+  if (triangles) {
+    const uint begin = tree->nodes[left].first;
+    const uint end = tree->nodes[right].first + tree->nodes[right].count;
+    expect_range(tree->triangles + begin, (end - begin) * sizeof(GnLeafTriangle));
+  }
+}
+
 #define GN_TREE_PARAMETERS                                                                                         \
   __global const GnNode *nodes, __global const GnForest *forests, __global const GnLeafTriangle *triangles,         \
       __global GnWideNode *wide_nodes, __global GnTriangleBlock *blocks, float node_cost, float block_cost
@@ -305,6 +327,7 @@ __kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks,
   const GnTree tree = GN_TREE;
   GnEmission work;
   if (index >= task_count) return;
+  expect_subtree(&tree, tasks[index].root, 0);
   start_emission(&work, tasks[index].root, 0u, 0u, 0u, 0u);
   while (work.height > 0u) emit_node(&tree, &work, 0);
   tasks[index].nodes_below = work.next_node;
@@ -319,6 +342,7 @@ __kernel void emit_subtrees(GN_TREE_PARAMETERS, __global const GnCollapseTask* t
   const GnTree tree = GN_TREE;
   GnEmission work;
   if (index >= task_count) return;
+  expect_subtree(&tree, tasks[index].root, 1);
   start_emission(&work, tasks[index].root, tasks[index].node, tasks[index].depth, tasks[index].nodes_below,
                  tasks[index].blocks_below);
   while (work.height > 0u) emit_node(&tree, &work, 1);

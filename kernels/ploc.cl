@@ -2,6 +2,7 @@
 // finds the nearest of its neighbours on the curve, and those that chose each other become one (PLOC: Meister, Bittner
 // 2018). A work-group has a segment to itself, in local memory. The serial flavour looks at all neighbours at once and
 // has no branch that depends on the data. Not for what becomes of the clusters (assemble.cl).
+#include "ahead.h"
 #include "shared/fast_math.h"
 #include "triangle_box.h"
 
@@ -153,6 +154,11 @@ static inline GnMoving after_round(const GnClusters* clusters, uint place, uint 
 static inline void store_merge(__global GnMerge* merge, float4 lo, float4 hi) {
   vstore4(lo, 0, (__global float*)merge);
   vstore4(hi, 1, (__global float*)merge);
+}
+
+static inline void expect_triangle(__global const float* triangles, uint triangle) {
+  GN_EXPECT(triangles + 9u * (size_t)triangle);
+  GN_EXPECT(triangles + 9u * (size_t)triangle + 8);
 }
 
 // The clusters of a segment, one a triangle, whose corners go to the segment's place in the curve's order.

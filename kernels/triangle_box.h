@@ -40,13 +40,4 @@ static inline GnCorners corners_of(__global const float* triangles, uint triangl
   return corners;
 }
 
-// Says that the triangle will be read soon, where the compiler has a way to: those along the curve are far apart.
-static inline void expect_triangle(__global const float* triangles, uint triangle) {
-#if defined(POCL_DEVICE_ADDRESS_BITS) && defined(__x86_64__)
-  const uintptr_t at = (uintptr_t)(triangles + 9u * (size_t)triangle);
-  __builtin_prefetch((const void*)at);
-  __builtin_prefetch((const void*)(at + 32u));
-#endif
-}
-
 #endif

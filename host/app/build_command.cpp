@@ -81,12 +81,12 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(
-      "Binned over all three axes, unless --builder says otherwise. The tree depends on the triangles and "
-      "the options under \"Tree\" and "
-      "\"Rays\"\n"
-      "alone: its hash is the same on every device. Times by stage are the device's own; the total is wall "
-      "clock\n"
-      "and includes the upload.\n\n" +
+      "Binned over all three axes, or with --builder fast along a curve: built sooner, traced a little "
+      "slower.\n"
+      "The tree depends on the triangles and the options under \"Tree\" and \"Rays\" alone: its hash is the "
+      "same\n"
+      "on every device. Times by stage are the device's own; the total is wall clock and includes the upload."
+      "\n\n" +
       std::string(kHeuristicHelp) +
       "\nExamples:\n  gnomon build model.glb\n  gnomon build gen:city:1M --bins 32 --device gpu --json\n"
       "  gnomon build gen:city:1M --heuristic window --light 0\n"

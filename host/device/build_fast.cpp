@@ -59,7 +59,7 @@ FastPlan plan_fast(const cl::DeviceInfo& device, std::uint64_t count, const Buil
   plan.count = general.count;
   plan.work_group_size = general.work_group_size;
   plan.item_group_size = general.item_group_size;
-  plan.cluster_run = general.work_group_size == 1 ? 32 : 1;
+  plan.cluster_run = general.work_group_size == 1 ? 64 : 1;
   plan.sort = plan_sort(device, general.count, general.work_group_size, options.chunk_size);
   heed_loop_limit(plan, device);
   return plan;
@@ -82,6 +82,7 @@ std::vector<BufferNeed> own_buffers(const FastPlan& plan) {
       {"stand_ins", clusters * sizeof(Triangle), true},
       {"first_triangles", (clusters + 1) * sizeof(std::uint32_t), true},
       {"first_splits", (clusters + 1) * sizeof(std::uint32_t), true},
+      {"cluster_leaves", clusters * sizeof(std::uint32_t), true},
       {"triangles", n * sizeof(Triangle), true},
       {"nodes", 2 * n * sizeof(GnNode), false},
       {"order", n * sizeof(std::uint32_t), false},
@@ -198,7 +199,9 @@ class FastBuilder {
         context_.create_buffer("first_triangles", (m + std::size_t{1}) * sizeof(std::uint32_t));
     const cl::Buffer first_split =
         context_.create_buffer("first_splits", (m + std::size_t{1}) * sizeof(std::uint32_t));
-    launch_items("assemble", "measure_clusters", m, clusters_, top.order, first_triangle, first_split, m);
+    const cl::Buffer leaves = context_.create_buffer("cluster_leaves", m * sizeof(std::uint32_t));
+    launch_items("assemble", "measure_clusters", m, clusters_, top.order, first_triangle, first_split, leaves,
+                 m);
     scan(first_triangle, m);
     scan(first_split, m);
     DeviceBvh tree;
@@ -214,8 +217,8 @@ class FastBuilder {
     const std::size_t items = (m + plan_.cluster_run - 1) / plan_.cluster_run;
     const std::size_t local = plan_.work_group_size == 1 ? 1 : plan_.item_group_size;
     launch("assemble", "emit_clusters", (items + local - 1) / local * local, local, sorted_, merges_,
-           clusters_, top.nodes, top.order, first_triangle, first_split, tree.nodes, tree.order,
-           tree.leaf_triangles, deepest, m, plan_.cluster_run);
+           clusters_, top.nodes, leaves, first_triangle, first_split, tree.nodes, tree.order,
+           tree.leaf_triangles, deepest, m, plan_.segments(), plan_.cluster_run);
     tree.max_depth = context_.download_values<std::uint32_t>(deepest, 1).front();
     return tree;
   }

@@ -10,18 +10,18 @@
 #define GN_NUMBER_MASK (2u * GN_SEGMENT - 1u)
 
 // One work-item per segment: its clusters go behind those of the segments before it, as `clusters` and as triangles that
-// have their boxes.
+// have their boxes. Moved as bits: whole numbers need not survive as floats.
 __kernel void list_clusters(__global const GnCluster* remaining, __global const uint* first, __global GnCluster* clusters,
-                            __global float* stand_ins, uint segments) {
+                            __global uint* stand_ins, uint segments) {
   const uint segment = (uint)get_global_id(0);
   uint i;
   if (segment >= segments) return;
   for (i = first[segment]; i < first[segment + 1u]; ++i) {
-    __global const float* from = (__global const float*)(remaining + segment * GN_SEGMENT_CLUSTERS + i - first[segment]);
-    const float4 lo = vload4(0, from), hi = vload4(1, from);
-    __global float* out = stand_ins + 9u * (size_t)i;
-    vstore4(lo, 2u * i, (__global float*)clusters);
-    vstore4(hi, 2u * i + 1u, (__global float*)clusters);
+    __global const uint* from = (__global const uint*)(remaining + segment * GN_SEGMENT_CLUSTERS + i - first[segment]);
+    const uint4 lo = vload4(0, from), hi = vload4(1, from);
+    __global uint* out = stand_ins + 9u * (size_t)i;
+    vstore4(lo, 2u * i, (__global uint*)clusters);
+    vstore4(hi, 2u * i + 1u, (__global uint*)clusters);
     vstore3(lo.xyz, 0, out);
     vstore3(hi.xyz, 1, out);
     vstore3(lo.xyz, 2, out);
@@ -55,9 +55,10 @@ static inline uint inner_below(__global const GnMerge* merges, uint place) {
   return is_triangle(place) ? 0u : merge_of(merges, place)->counts >> 16;
 }
 
-static inline void write_fast_node(__global GnNode* node, float4 lo, float4 hi, uint first, uint count) {
-  vstore4((float4)(lo.xyz, as_float(first)), 0, (__global float*)node);
-  vstore4((float4)(hi.xyz, as_float(count)), 1, (__global float*)node);
+// lo, hi: a box's bits, lanes w anything.
+static inline void write_fast_node(__global GnNode* node, uint4 lo, uint4 hi, uint first, uint count) {
+  vstore4((uint4)(lo.xyz, first), 0, (__global uint*)node);
+  vstore4((uint4)(hi.xyz, count), 1, (__global uint*)node);
 }
 
 // Children of the k-th split between clusters, in the finished tree.
@@ -125,17 +126,17 @@ typedef struct GnAssembly {
 
 // Copies a triangle to its place in leaf order and, where it is a leaf by itself, writes that node.
 static inline void emit_triangle(const GnAssembly* tree, uint place, uint at, uint node) {
-  __global const float* from = (__global const float*)(tree->triangles + (size_t)(place / (2u * GN_SEGMENT)) * GN_SEGMENT +
+  __global const uint* from = (__global const uint*)(tree->triangles + (size_t)(place / (2u * GN_SEGMENT)) * GN_SEGMENT +
                                                        (place & GN_NUMBER_MASK));
-  __global float* out = (__global float*)(tree->leaf_triangles + at);
-  const float4 a = vload4(0, from), b = vload4(1, from), c = vload4(2, from);
-  tree->order[at] = as_uint(a.w);
+  __global uint* out = (__global uint*)(tree->leaf_triangles + at);
+  const uint4 a = vload4(0, from), b = vload4(1, from), c = vload4(2, from);
+  tree->order[at] = a.w;
   vstore4(a, 0, out);
   vstore4(b, 1, out);
   vstore4(c, 2, out);
   if (node < GN_IN_LEAF) {
-    const GnBoxPair box = box_of_corners(a.xyz, b.xyz, c.xyz);
-    write_fast_node(tree->nodes + node, box.lo, box.hi, at, 1u);
+    const GnBoxPair box = box_of_corners(as_float4(a).xyz, as_float4(b).xyz, as_float4(c).xyz);
+    write_fast_node(tree->nodes + node, as_uint4(box.lo), as_uint4(box.hi), at, 1u);
   }
 }
 
@@ -156,16 +157,16 @@ static inline uint emit_cluster(const GnAssembly* tree, uint root, uint at, uint
       split += node < GN_IN_LEAF;
       at += 1u;
     } else {
-      __global const float* merge = (__global const float*)merge_of(tree->merges, place);
-      const float4 lo = vload4(0, merge), hi = vload4(1, merge);
-      const uint left = child_place(place, as_uint(lo.w), 0u);
-      const uint inner = node == GN_IN_LEAF ? 0u : as_uint(hi.w) >> 16;
+      __global const uint* merge = (__global const uint*)merge_of(tree->merges, place);
+      const uint4 lo = vload4(0, merge), hi = vload4(1, merge);
+      const uint left = child_place(place, lo.w, 0u);
+      const uint inner = node == GN_IN_LEAF ? 0u : hi.w >> 16;
       const uint own = split + inner_below(tree->merges, left);
       const uint children = inner ? 1u + 2u * own : GN_IN_LEAF;
       if (node < GN_IN_LEAF)
-        write_fast_node(tree->nodes + node, lo, hi, inner ? children : at, inner ? 0u : as_uint(hi.w));
+        write_fast_node(tree->nodes + node, lo, hi, inner ? children : at, inner ? 0u : hi.w);
       split += !inner && node < GN_IN_LEAF;  // behind each leaf but the last stands a split
-      places[height] = child_place(place, as_uint(lo.w), 1u);
+      places[height] = child_place(place, lo.w, 1u);
       nodes[height] = inner ? children + 1u : GN_IN_LEAF;
       depths[height] = depth + (inner ? 1u : 0u);
       places[height + 1u] = left;

@@ -54,15 +54,15 @@ __kernel void cut_binary(__global const GnNode* nodes, uint inner_count, uint li
 
 #define GN_LEAST8(a, b) ((a) < (b) ? (a) : (b))
 
-// gn_forest_of as a vector: the costs, and the bits of the number of triangles.
+// gn_forest_of's costs as a vector, the last lane anything; its triangles are added to *triangles.
 static inline float8 forest_vector(__global const GnNode* nodes, __global const GnForest* forests, uint node,
-                                   float block_cost) {
+                                   float block_cost, uint* triangles) {
   const uint count = nodes[node].count;
   if (count > 0u) {
-    float8 leaf = (float8)(gn_wide_leaf_cost(gn_half_area(nodes + node), count, block_cost));
-    leaf.s7 = as_float(count);
-    return leaf;
+    *triangles += count;
+    return (float8)(gn_wide_leaf_cost(gn_half_area(nodes + node), count, block_cost));
   }
+  *triangles += forests[(nodes[node].first - 1u) / 2u].triangles;
   return vload8((nodes[node].first - 1u) / 2u, (__global const float*)forests);
 }
 
@@ -70,9 +70,9 @@ static inline float8 forest_vector(__global const GnNode* nodes, __global const 
 static inline void join_children(__global const GnNode* nodes, __global GnForest* forests, uint node,
                                  GnCollapseCosts costs) {
   const uint first = nodes[node].first;
-  const float8 l = forest_vector(nodes, forests, first, costs.block);
-  const float8 r = forest_vector(nodes, forests, first + 1u, costs.block);
-  const uint triangles = as_uint(l.s7) + as_uint(r.s7);
+  uint triangles = 0u;
+  const float8 l = forest_vector(nodes, forests, first, costs.block, &triangles);
+  const float8 r = forest_vector(nodes, forests, first + 1u, costs.block, &triangles);
   const float none = INFINITY;
   const float area = gn_half_area(nodes + node);
   float8 out;
@@ -92,8 +92,9 @@ static inline void join_children(__global const GnNode* nodes, __global GnForest
   out.s4 = gn_min(least.s3, out.s3);
   out.s5 = gn_min(least.s4, out.s4);
   out.s6 = gn_min(least.s5, out.s5);
-  out.s7 = as_float(triangles);
+  out.s7 = 0.0f;
   vstore8(out, (first - 1u) / 2u, (__global float*)forests);
+  forests[(first - 1u) / 2u].triangles = triangles;
 }
 
 // Forests of the inner nodes of one subtree per work-item, children before parents.
@@ -154,17 +155,17 @@ typedef struct GnEmission {
   uint largest_leaf;  // triangles
 } GnEmission;
 
-// Four triangles' corners side by side. rows: one triangle's corner each.
-static inline void store_columns(__global float* out, uint plane, float4 r0, float4 r1, float4 r2, float4 r3) {
-  vstore4((float4)(r0.x, r1.x, r2.x, r3.x), 0, out + GN_WIDTH * plane);
-  vstore4((float4)(r0.y, r1.y, r2.y, r3.y), 0, out + GN_WIDTH * (plane + 1u));
-  vstore4((float4)(r0.z, r1.z, r2.z, r3.z), 0, out + GN_WIDTH * (plane + 2u));
+// Four triangles' corners side by side, as bits: rows are one triangle's corner each.
+static inline void store_columns(__global uint* out, uint plane, uint4 r0, uint4 r1, uint4 r2, uint4 r3) {
+  vstore4((uint4)(r0.x, r1.x, r2.x, r3.x), 0, out + GN_WIDTH * plane);
+  vstore4((uint4)(r0.y, r1.y, r2.y, r3.y), 0, out + GN_WIDTH * (plane + 1u));
+  vstore4((uint4)(r0.z, r1.z, r2.z, r3.z), 0, out + GN_WIDTH * (plane + 2u));
 }
 
 // A corner with what stands behind it; zeros for a triangle past the end.
-static inline float4 corner_or_none(__global const GnLeafTriangle* triangles, uint i, uint count, uint corner) {
-  const float4 row = vload4(corner, (__global const float*)(triangles + min(i, count - 1u)));
-  return i < count ? row : (float4)(0.0f, 0.0f, 0.0f, as_float(GN_NONE));
+static inline uint4 corner_or_none(__global const GnLeafTriangle* triangles, uint i, uint count, uint corner) {
+  const uint4 row = vload4(corner, (__global const uint*)(triangles + min(i, count - 1u)));
+  return i < count ? row : (uint4)(0u, 0u, 0u, GN_NONE);
 }
 
 static inline void write_leaf(const GnTree* tree, uint node, uint triangles, uint block) {
@@ -172,14 +173,14 @@ static inline void write_leaf(const GnTree* tree, uint node, uint triangles, uin
   uint i, corner;
   for (i = 0u; i < gn_blocks_of(triangles) * GN_WIDTH; i += 4u) {
     __global GnTriangleBlock* out = tree->blocks + block + i / GN_WIDTH;
-    __global float* lanes = &out->corners[0][i % GN_WIDTH];
+    __global uint* lanes = (__global uint*)out + i % GN_WIDTH;
     for (corner = 0u; corner < 3u; ++corner) {
-      const float4 r0 = corner_or_none(from, i, triangles, corner), r1 = corner_or_none(from, i + 1u, triangles, corner);
-      const float4 r2 = corner_or_none(from, i + 2u, triangles, corner),
-                   r3 = corner_or_none(from, i + 3u, triangles, corner);
+      const uint4 r0 = corner_or_none(from, i, triangles, corner), r1 = corner_or_none(from, i + 1u, triangles, corner);
+      const uint4 r2 = corner_or_none(from, i + 2u, triangles, corner),
+                  r3 = corner_or_none(from, i + 3u, triangles, corner);
       store_columns(lanes, 3u * corner, r0, r1, r2, r3);
       if (corner == 0u)  // behind the first stands the triangle's number
-        vstore4((uint4)(as_uint(r0.w), as_uint(r1.w), as_uint(r2.w), as_uint(r3.w)), 0, out->primitives + i % GN_WIDTH);
+        vstore4((uint4)(r0.w, r1.w, r2.w, r3.w), 0, out->primitives + i % GN_WIDTH);
     }
   }
 }

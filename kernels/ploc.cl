@@ -14,10 +14,10 @@
 #define GN_AHEAD 16u
 
 // Clusters in their order on the curve. boxes: lower corner with what it counts (gn_merge_counts), upper corner with its
-// cost. planes: the same corners for those who look at many clusters at once: lower x, y, z, upper x, y, z, each from
+// cost; bits throughout, since small whole numbers are floats that devices may take for zero. planes: the same corners for those who look at many clusters at once: lower x, y, z, upper x, y, z, each from
 // GN_BEFORE on.
 typedef struct GnClusters {
-  __local float* boxes;
+  __local uint* boxes;
   __local float* planes;
   __local ushort* numbers;
   __local ushort* partners;
@@ -25,8 +25,8 @@ typedef struct GnClusters {
 
 // One cluster on its way from place to place. Lanes w as in boxes.
 typedef struct GnMoving {
-  float4 lo;
-  float4 hi;
+  uint4 lo;
+  uint4 hi;
   uint number;
 } GnMoving;
 
@@ -37,16 +37,16 @@ static inline __local float* plane_of(const GnClusters* clusters, uint plane) {
 static inline void put_cluster(const GnClusters* clusters, uint place, GnMoving cluster) {
   vstore4(cluster.lo, 2u * place, clusters->boxes);
   vstore4(cluster.hi, 2u * place + 1u, clusters->boxes);
-  plane_of(clusters, 0u)[place] = cluster.lo.x;
-  plane_of(clusters, 1u)[place] = cluster.lo.y;
-  plane_of(clusters, 2u)[place] = cluster.lo.z;
-  plane_of(clusters, 3u)[place] = cluster.hi.x;
-  plane_of(clusters, 4u)[place] = cluster.hi.y;
-  plane_of(clusters, 5u)[place] = cluster.hi.z;
+  plane_of(clusters, 0u)[place] = as_float(cluster.lo.x);
+  plane_of(clusters, 1u)[place] = as_float(cluster.lo.y);
+  plane_of(clusters, 2u)[place] = as_float(cluster.lo.z);
+  plane_of(clusters, 3u)[place] = as_float(cluster.hi.x);
+  plane_of(clusters, 4u)[place] = as_float(cluster.hi.y);
+  plane_of(clusters, 5u)[place] = as_float(cluster.hi.z);
   clusters->numbers[place] = (ushort)cluster.number;
 }
 
-static inline float half_area_of(float4 lo, float4 hi) {
+static inline float half_area_of(float3 lo, float3 hi) {
   const float l[3] = {lo.x, lo.y, lo.z}, h[3] = {hi.x, hi.y, hi.z};
   return gn_surface_measure(l, h);
 }
@@ -127,33 +127,33 @@ static inline void choose_partners(const GnClusters* clusters, uint count, uint 
 // What stands at a place after this round: the cluster itself, or it and its partner as one (joins == 1), which gets the
 // number given and whose merge is `record`'s corners. The later one of two that merge is no more (stays == 0).
 static inline GnMoving after_round(const GnClusters* clusters, uint place, uint next_merge, GnLeafRule rule,
-                                   float4* record_lo, float4* record_hi, uint* stays, uint* joins) {
+                                   uint4* record_lo, uint4* record_hi, uint* stays, uint* joins) {
   const uint chosen = clusters->partners[place];
   const uint mutual = clusters->partners[chosen] == place;
   const uint joining = mutual & (uint)(chosen > place);
   const uint partner = joining ? chosen : place;
   const uint number = clusters->numbers[place];
-  const float4 lo = vload4(2u * place, clusters->boxes), hi = vload4(2u * place + 1u, clusters->boxes);
-  const float4 other_lo = vload4(2u * partner, clusters->boxes), other_hi = vload4(2u * partner + 1u, clusters->boxes);
-  GnMoving out;
+  const uint4 lo = vload4(2u * place, clusters->boxes), hi = vload4(2u * place + 1u, clusters->boxes);
+  const uint4 other_lo = vload4(2u * partner, clusters->boxes), other_hi = vload4(2u * partner + 1u, clusters->boxes);
+  const float3 least = GN_VMIN(as_float4(lo).xyz, as_float4(other_lo).xyz);
+  const float3 most = GN_VMAX(as_float4(hi).xyz, as_float4(other_hi).xyz);
   float cost;
-  out.lo = GN_VMIN(lo, other_lo);
-  out.hi = GN_VMAX(hi, other_hi);
-  const uint counts = gn_merge_counts(rule, half_area_of(out.lo, out.hi), hi.w + other_hi.w, as_uint(lo.w),
-                                      as_uint(other_lo.w), &cost);
-  *record_lo = (float4)(out.lo.xyz, as_float(number | (uint)clusters->numbers[partner] << 16));
-  *record_hi = (float4)(out.hi.xyz, as_float(counts));
-  out.lo.w = joining ? as_float(counts) : lo.w;
-  out.hi.w = joining ? cost : hi.w;
+  const uint counts = gn_merge_counts(rule, half_area_of(least, most), as_float(hi.w) + as_float(other_hi.w), lo.w,
+                                      other_lo.w, &cost);
+  GnMoving out;
+  out.lo = (uint4)(as_uint(least.x), as_uint(least.y), as_uint(least.z), joining ? counts : lo.w);
+  out.hi = (uint4)(as_uint(most.x), as_uint(most.y), as_uint(most.z), joining ? as_uint(cost) : hi.w);
   out.number = joining ? next_merge : number;
+  *record_lo = (uint4)(out.lo.xyz, number | (uint)clusters->numbers[partner] << 16);
+  *record_hi = (uint4)(out.hi.xyz, counts);
   *stays = 1u ^ (mutual & (uint)(chosen < place));
   *joins = joining;
   return out;
 }
 
-static inline void store_merge(__global GnMerge* merge, float4 lo, float4 hi) {
-  vstore4(lo, 0, (__global float*)merge);
-  vstore4(hi, 1, (__global float*)merge);
+static inline void store_merge(__global GnMerge* merge, uint4 lo, uint4 hi) {
+  vstore4(lo, 0, (__global uint*)merge);
+  vstore4(hi, 1, (__global uint*)merge);
 }
 
 static inline void expect_triangle(__global const float* triangles, uint triangle) {
@@ -172,16 +172,16 @@ static inline void load_clusters(const GnClusters* clusters, __global const floa
     const uint triangle = keys[i].y;
     const GnCorners corners = corners_of(triangles, triangle);
     const GnBoxPair box = box_of_corners(corners.a, corners.b, corners.c);
-    __global float* out = (__global float*)(sorted + i);
+    __global uint* out = (__global uint*)(sorted + i);
     GnMoving cluster;
 #if GN_WGS == 1
     expect_triangle(triangles, keys[min(i + GN_AHEAD, count - 1u)].y);
 #endif
-    vstore4((float4)(corners.a, as_float(triangle)), 0, out);
-    vstore4((float4)(corners.b, 0.0f), 1, out);
-    vstore4((float4)(corners.c, 0.0f), 2, out);
-    cluster.lo = (float4)(box.lo.xyz, as_float(1u));
-    cluster.hi = (float4)(box.hi.xyz, gn_triangle_cost(rule, half_area_of(box.lo, box.hi)));
+    vstore4((uint4)(as_uint3(corners.a), triangle), 0, out);
+    vstore4((uint4)(as_uint3(corners.b), 0u), 1, out);
+    vstore4((uint4)(as_uint3(corners.c), 0u), 2, out);
+    cluster.lo = (uint4)(as_uint4(box.lo).xyz, 1u);
+    cluster.hi = (uint4)(as_uint4(box.hi).xyz, as_uint(gn_triangle_cost(rule, half_area_of(box.lo.xyz, box.hi.xyz))));
     cluster.number = i;
     put_cluster(clusters, i, cluster);
   }
@@ -192,7 +192,7 @@ static inline void load_clusters(const GnClusters* clusters, __global const floa
 __kernel void merge_segments(__global const float* triangles, __global const uint2* keys,
                              __global GnLeafTriangle* sorted, __global GnMerge* merges, __global GnCluster* remaining, __global uint* remaining_counts, uint count,
                              float cost_traversal, float cost_triangle, uint max_leaf_size) {
-  __local float boxes[8 * GN_SEGMENT] __attribute__((aligned(32)));
+  __local uint boxes[8 * GN_SEGMENT] __attribute__((aligned(32)));
   __local float planes[6 * GN_PLACES];
   __local ushort numbers[GN_SEGMENT], partners[GN_SEGMENT];
 #if GN_WGS > 1
@@ -216,7 +216,7 @@ __kernel void merge_segments(__global const float* triangles, __global const uin
     GN_GROUP_BARRIER();
 #if GN_WGS == 1
     for (i = 0u; i < height; ++i) {
-      float4 lo, hi;
+      uint4 lo, hi;
       uint stays, joins;
       const GnMoving cluster = after_round(&clusters, i, GN_SEGMENT + merged, rule, &lo, &hi, &stays, &joins);
       store_merge(merges + merged, lo, hi);
@@ -227,7 +227,7 @@ __kernel void merge_segments(__global const float* triangles, __global const uin
 #else
     for (i = 0u; i < height; i += GN_WGS) {
       const uint place = i + GN_LOCAL_ID;
-      float4 lo, hi;
+      uint4 lo, hi;
       uint stays, joins, before;
       GnMoving cluster =
           after_round(&clusters, place < height ? place : 0u, 0u, rule, &lo, &hi, &stays, &joins);
@@ -248,11 +248,13 @@ __kernel void merge_segments(__global const float* triangles, __global const uin
 #endif
     height = kept;
   }
-  for (i = GN_LOCAL_ID; i < height; i += GN_WGS) {
-    __global float* out = (__global float*)(remaining + (size_t)segment * GN_SEGMENT_CLUSTERS + i);
-    const float4 lo = vload4(2u * i, boxes), hi = vload4(2u * i + 1u, boxes);
-    vstore4((float4)(lo.xyz, as_float(segment * 2u * GN_SEGMENT + numbers[i])), 0, out);
-    vstore4((float4)(hi.xyz, lo.w), 1, out);
+  // Counted to a constant: with a bound that a loop before has changed Mesa 22.3 leaves after the first turn.
+  for (i = GN_LOCAL_ID; i < GN_SEGMENT_CLUSTERS; i += GN_WGS) {
+    if (i >= height) continue;
+    __global uint* out = (__global uint*)(remaining + (size_t)segment * GN_SEGMENT_CLUSTERS + i);
+    const uint4 lo = vload4(2u * i, boxes), hi = vload4(2u * i + 1u, boxes);
+    vstore4((uint4)(lo.xyz, segment * 2u * GN_SEGMENT + numbers[i]), 0, out);
+    vstore4((uint4)(hi.xyz, lo.w), 1, out);
   }
   if (GN_LOCAL_ID == 0u) remaining_counts[segment] = height;
 }

@@ -140,9 +140,9 @@ TEST_CASE("the builder is chosen and named, by every command that builds, and re
   const json options = options_of({"--builder", "fast"});
   REQUIRE(options.at("builder") == "fast");
   REQUIRE(options.at("hash") != options_of({}).at("hash"));
-  const auto text = run({"build", "gen:cottage:2k", "--repeat", "1", "--builder", "fast"});
+  const auto text = run({"build", "gen:cottage:8k", "--repeat", "1", "--builder", "fast"});
   REQUIRE_THAT(text.out, Contains("builder") && Contains("fast"));
-  const auto valid = run({"validate", "gen:cottage:2k", "--builder", "fast", "--json"});
+  const auto valid = run({"validate", "gen:cottage:8k", "--builder", "fast", "--json"});
   CAPTURE(valid.err);
   REQUIRE(valid.status == 0);
   REQUIRE(json::parse(valid.out).at("options").at("builder") == "fast");

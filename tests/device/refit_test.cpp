@@ -71,6 +71,8 @@ void require_refitted_wide(const Triangles& before, const Triangles& after,
 TEST_CASE("a refitted tree has the boxes of its moved triangles, and its own where none moved",
           "[portable][refit]") {
   for (const auto& shape : gnomon::test::wide_shapes()) {
+    // Devices that end loops build no leaves this large.
+    if (context().device().loop_limit != 0 && shape.options.max_leaf_size > 100) continue;
     CAPTURE(shape.name);
     require_refitted(shape.triangles, moved(shape.triangles, 121), shape.options);
   }

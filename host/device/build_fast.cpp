@@ -59,7 +59,8 @@ FastPlan plan_fast(const cl::DeviceInfo& device, std::uint64_t count, const Buil
   plan.count = general.count;
   plan.work_group_size = general.work_group_size;
   plan.item_group_size = general.item_group_size;
-  plan.cluster_run = general.work_group_size == 1 ? 64 : 1;
+  // Several save a CPU the start of a group each; devices that end loops are given as little as can be.
+  plan.cluster_run = general.work_group_size == 1 && device.loop_limit == 0 ? 64 : 1;
   plan.sort = plan_sort(device, general.count, general.work_group_size, options.chunk_size);
   heed_loop_limit(plan, device);
   return plan;
@@ -215,7 +216,7 @@ class FastBuilder {
     const cl::Buffer deepest = context_.create_buffer("deepest", sizeof(std::uint32_t));
     context_.fill(deepest, 0);
     const std::size_t items = (m + plan_.cluster_run - 1) / plan_.cluster_run;
-    const std::size_t local = plan_.work_group_size == 1 ? 1 : plan_.item_group_size;
+    const std::size_t local = plan_.cluster_run > 1 ? 1 : plan_.item_group_size;
     launch("assemble", "emit_clusters", (items + local - 1) / local * local, local, sorted_, merges_,
            clusters_, top.nodes, leaves, first_triangle, first_split, tree.nodes, tree.order,
            tree.leaf_triangles, deepest, m, plan_.segments(), plan_.cluster_run);

@@ -47,13 +47,14 @@ TEST_CASE("the serial flavour builds the fast reference's tree from every awkwar
   }
 }
 
-TEST_CASE("the cooperative flavour builds the same fast tree", "[portable][fast]") {
+TEST_CASE("the cooperative flavour builds the same fast tree, of several segments too", "[portable][fast]") {
   for (const auto& [name, triangles] : gnomon::test::awkward_inputs()) {
     CAPTURE(name);
     require_same(triangles, fast(16, 64));
   }
-  for (const std::uint32_t count : {511U, 512U, 513U, 1500U}) {
+  for (const std::uint32_t count : {511U, 512U, 513U, 1500U, 4000U}) {
     CAPTURE(count);
+    require_same(gnomon::test::soup(count, 51), fast(1, 200));
     require_same(gnomon::test::soup(count, 51), fast(16, 200));
   }
 }

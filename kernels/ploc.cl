@@ -63,7 +63,8 @@ static inline void fence(const GnClusters* clusters, uint count) {
   }
 }
 
-#if GN_WGS == 1
+// PoCL's compiler makes sixteen lanes one instruction; others take the loop below, whose keys are the same.
+#if GN_WGS == 1 && defined(POCL_DEVICE_ADDRESS_BITS)
 
 #define GN_ALL16(x) ((float16)(x))
 

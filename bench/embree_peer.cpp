@@ -96,6 +96,8 @@ void EmbreeScene::build() {
   rtcSetSceneBuildQuality(scene_, rtc_quality(quality_));
   if (robust_) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  // A scene of low quality is built in two levels, each geometry by its own quality.
+  if (quality_ == EmbreeQuality::kLow) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
   const std::size_t count = triangles_.size();
   auto* vertices = static_cast<float*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * count));

@@ -44,6 +44,7 @@ struct Settings {
   std::vector<std::string> rays{"primary",  "bounce",      "bounce-shuffled", "shadow",
                                 "sun-axis", "sun-oblique", "random"};
   std::vector<std::string> flavours{"packet", "wide"};
+  std::vector<std::string> builders{"balanced"};
   std::uint64_t ray_count = 262'144;
   std::uint64_t seed = 1;
   int rounds = 7;
@@ -68,6 +69,12 @@ void add_options(CLI::App& program, Settings& s) {
   program.add_option("--flavours", s.flavours, "of our tracer, by commas")
       ->delimiter(',')
       ->check(CLI::IsMember({"packet", "wide", "portable", "portable-packet", "thread"}))
+      ->capture_default_str();
+  program
+      .add_option("--builders", s.builders,
+                  "of our trees, by commas; balanced is set beside MEDIUM, fast beside LOW and single rays")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"balanced", "fast"}))
       ->capture_default_str();
   program.add_option("--ray-count", s.ray_count, "rays a batch")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 31U))
@@ -102,7 +109,10 @@ gnomon::Scene scene_from(const std::string& name, const Settings& settings) {
 class SceneBench {
  public:
   SceneBench(const gnomon::cl::Context& context, const Settings& settings, const std::string& name)
-      : context_(context), settings_(settings), scene_(scene_from(name, settings)) {
+      : context_(context),
+        settings_(settings),
+        options_(settings.options),
+        scene_(scene_from(name, settings)) {
     threads_ = settings.all_threads ? std::max(1U, std::thread::hardware_concurrency()) : 1;
     common_ = {{"schema", 1},
                {"bench", "gnomon"},
@@ -123,8 +133,18 @@ class SceneBench {
   }
 
   void run() {
-    EmbreeScene fast(scene_.triangles, EmbreeQuality::kMedium, false, threads_);
-    EmbreeScene robust(scene_.triangles, EmbreeQuality::kMedium, true, threads_);
+    for (const std::string& builder : settings_.builders) {
+      const bool fast = builder == "fast";
+      options_.builder = fast ? gnomon::Builder::kFast : gnomon::Builder::kBalanced;
+      run_builder(fast ? EmbreeQuality::kLow : EmbreeQuality::kMedium);
+    }
+  }
+
+ private:
+  // Balanced trees beside Embree in both its modes; fast ones beside its own fast ones.
+  void run_builder(EmbreeQuality quality) {
+    EmbreeScene fast(scene_.triangles, quality, false, threads_);
+    EmbreeScene robust(scene_.triangles, quality, true, threads_);
     if (settings_.build) {
       build_rows(fast);
     } else {
@@ -132,22 +152,25 @@ class SceneBench {
       fast.build();
     }
     if (settings_.rays.front() == "none") return;
-    robust.build();
+    std::vector<const EmbreeScene*> peers{&fast};
+    if (quality == EmbreeQuality::kMedium) {
+      robust.build();
+      peers.push_back(&robust);
+    }
     const gnomon::Tracer tracer(context_, wide_);
     primary_ = gnomon::primary_rays(scene_, settings_.ray_count, settings_.seed);
     hits_ = tracer.closest(primary_).hits;
-    for (const std::string& kind : settings_.rays) trace_rows(kind, {&fast, &robust});
+    for (const std::string& kind : settings_.rays) trace_rows(kind, peers);
   }
 
- private:
   void build_ours() {
     report_ = {};
-    tree_ = gnomon::build_device(context_, scene_.triangles, settings_.options, &report_);
+    tree_ = gnomon::build_device(context_, scene_.triangles, options_, &report_);
     wide_ = gnomon::collapse_device(context_, tree_, settings_.collapse, &report_);
   }
 
   void build_rows(EmbreeScene& peer) {
-    std::vector<Contestant> contest{{"balanced", [&] { build_ours(); }},
+    std::vector<Contestant> contest{{to_string(options_.builder), [&] { build_ours(); }},
                                     {peer.name(), [&] { peer.build(); }}};
     run_contest(contest, settings_.rounds);
     json extra;
@@ -218,7 +241,7 @@ class SceneBench {
     for (const EmbreeScene* peer : peers) {
       contest.push_back(
           {peer->name() + " 1", [&, peer] { any ? peer->any(rays, occluded) : peer->closest(rays, hits); }});
-      if (kind != "primary" && !any) continue;
+      if ((kind != "primary" && !any) || options_.builder == gnomon::Builder::kFast) continue;
       contest.push_back({peer->name() + " 16",
                          [&, peer] { any ? peer->any16(rays, occluded) : peer->closest16(rays, hits); }});
     }
@@ -267,6 +290,7 @@ class SceneBench {
         row["name"] = task + "/" + std::string(common_["scene"]) + "/" + extra.value("rays", "") + "/" +
                       contest[a].name + "/" + contest[b].name;
         row["task"] = task;
+        row["builder"] = to_string(options_.builder);
         row["ours"] = contest[a].name;
         row["peer"] = contest[b].name;
         row["clock"] = wall ? "wall" : "process CPU time";
@@ -286,6 +310,7 @@ class SceneBench {
 
   const gnomon::cl::Context& context_;
   const Settings& settings_;
+  gnomon::BuildOptions options_;
   gnomon::Scene scene_;
   unsigned threads_ = 1;
   gnomon::DeviceBvh tree_;

@@ -2,6 +2,7 @@
 // what collapsing them costs, then writes wide nodes and triangle blocks from the root down. A wide node's children
 // that are nodes lie side by side, what is below them follows child by child: numbers depend on the tree alone, not
 // on the cuts. One work-item a subtree throughout. Options: GN_COLLAPSE_DEPTH, above the binary tree's depth.
+#include "ahead.h"
 #include "shared/collapse_math.h"
 
 #ifndef GN_COLLAPSE_DEPTH
@@ -51,12 +52,49 @@ __kernel void cut_binary(__global const GnNode* nodes, uint inner_count, uint li
   numbers[1] = top_count;
 }
 
+#define GN_LEAST8(a, b) ((a) < (b) ? (a) : (b))
+
+// gn_forest_of's costs as a vector, the last lane anything; its triangles are added to *triangles.
+static inline float8 forest_vector(__global const GnNode* nodes, __global const GnForest* forests, uint node,
+                                   float block_cost, uint* triangles) {
+  const uint count = nodes[node].count;
+  if (count > 0u) {
+    *triangles += count;
+    return (float8)(gn_wide_leaf_cost(gn_half_area(nodes + node), count, block_cost));
+  }
+  *triangles += forests[(nodes[node].first - 1u) / 2u].triangles;
+  return vload8((nodes[node].first - 1u) / 2u, (__global const float*)forests);
+}
+
+// gn_inner_forest on vectors: the same sums and minima, those of all budgets at once. Compilers leave its loops loops.
 static inline void join_children(__global const GnNode* nodes, __global GnForest* forests, uint node,
                                  GnCollapseCosts costs) {
   const uint first = nodes[node].first;
-  const GnForest left = gn_forest_of(nodes, forests, first, costs.block);
-  const GnForest right = gn_forest_of(nodes, forests, first + 1u, costs.block);
-  forests[(first - 1u) / 2u] = gn_inner_forest(gn_half_area(nodes + node), &left, &right, costs);
+  uint triangles = 0u;
+  const float8 l = forest_vector(nodes, forests, first, costs.block, &triangles);
+  const float8 r = forest_vector(nodes, forests, first + 1u, costs.block, &triangles);
+  const float none = INFINITY;
+  const float area = gn_half_area(nodes + node);
+  float8 out;
+  // Lane i: the least of all divisions of i + 2 children, of which the left one gets 1, 2, ...
+  float8 least = l.s0 + r;
+  least = GN_LEAST8(least, l.s1 + (float8)(none, r.s0, r.s1, r.s2, r.s3, r.s4, r.s5, none));
+  least = GN_LEAST8(least, l.s2 + (float8)(none, none, r.s0, r.s1, r.s2, r.s3, r.s4, none));
+  least = GN_LEAST8(least, l.s3 + (float8)(none, none, none, r.s0, r.s1, r.s2, r.s3, none));
+  least = GN_LEAST8(least, l.s4 + (float8)(none, none, none, none, r.s0, r.s1, r.s2, none));
+  least = GN_LEAST8(least, l.s5 + (float8)(none, none, none, none, none, r.s0, r.s1, none));
+  least = GN_LEAST8(least, l.s6 + (float8)(none, none, none, none, none, none, r.s0, none));
+  out.s0 = least.s6 + area * costs.node;
+  if (triangles <= GN_WIDTH) out.s0 = gn_min(out.s0, gn_wide_leaf_cost(area, triangles, costs.block));
+  out.s1 = gn_min(least.s0, out.s0);
+  out.s2 = gn_min(least.s1, out.s1);
+  out.s3 = gn_min(least.s2, out.s2);
+  out.s4 = gn_min(least.s3, out.s3);
+  out.s5 = gn_min(least.s4, out.s4);
+  out.s6 = gn_min(least.s5, out.s5);
+  out.s7 = 0.0f;
+  vstore8(out, (first - 1u) / 2u, (__global float*)forests);
+  forests[(first - 1u) / 2u].triangles = triangles;
 }
 
 // Forests of the inner nodes of one subtree per work-item, children before parents.
@@ -117,42 +155,56 @@ typedef struct GnEmission {
   uint largest_leaf;  // triangles
 } GnEmission;
 
+// Four triangles' corners side by side, as bits: rows are one triangle's corner each.
+static inline void store_columns(__global uint* out, uint plane, uint4 r0, uint4 r1, uint4 r2, uint4 r3) {
+  vstore4((uint4)(r0.x, r1.x, r2.x, r3.x), 0, out + GN_WIDTH * plane);
+  vstore4((uint4)(r0.y, r1.y, r2.y, r3.y), 0, out + GN_WIDTH * (plane + 1u));
+  vstore4((uint4)(r0.z, r1.z, r2.z, r3.z), 0, out + GN_WIDTH * (plane + 2u));
+}
+
+// A corner with what stands behind it; zeros for a triangle past the end.
+static inline uint4 corner_or_none(__global const GnLeafTriangle* triangles, uint i, uint count, uint corner) {
+  const uint4 row = vload4(corner, (__global const uint*)(triangles + min(i, count - 1u)));
+  return i < count ? row : (uint4)(0u, 0u, 0u, GN_NONE);
+}
+
 static inline void write_leaf(const GnTree* tree, uint node, uint triangles, uint block) {
-  const uint first = gn_first_triangle(tree->nodes, node);
-  uint i, k;
-  for (i = 0u; i < gn_blocks_of(triangles) * GN_WIDTH; ++i) {
+  __global const GnLeafTriangle* from = tree->triangles + gn_first_triangle(tree->nodes, node);
+  uint i, corner;
+  for (i = 0u; i < gn_blocks_of(triangles) * GN_WIDTH; i += 4u) {
     __global GnTriangleBlock* out = tree->blocks + block + i / GN_WIDTH;
-    const uint lane = i % GN_WIDTH;
-    if (i < triangles) {
-      const GnLeafTriangle triangle = tree->triangles[first + i];
-      for (k = 0u; k < 3u; ++k) {
-        out->corners[k][lane] = triangle.v0[k];
-        out->corners[3u + k][lane] = triangle.v1[k];
-        out->corners[6u + k][lane] = triangle.v2[k];
-      }
-      out->primitives[lane] = triangle.primitive;
-    } else {
-      for (k = 0u; k < 9u; ++k) out->corners[k][lane] = 0.0f;
-      out->primitives[lane] = GN_NONE;
+    __global uint* lanes = (__global uint*)out + i % GN_WIDTH;
+    for (corner = 0u; corner < 3u; ++corner) {
+      const uint4 r0 = corner_or_none(from, i, triangles, corner), r1 = corner_or_none(from, i + 1u, triangles, corner);
+      const uint4 r2 = corner_or_none(from, i + 2u, triangles, corner),
+                  r3 = corner_or_none(from, i + 3u, triangles, corner);
+      store_columns(lanes, 3u * corner, r0, r1, r2, r3);
+      if (corner == 0u)  // behind the first stands the triangle's number
+        vstore4((uint4)(r0.w, r1.w, r2.w, r3.w), 0, out->primitives + i % GN_WIDTH);
     }
   }
 }
 
 static inline void write_box(__global GnWideNode* out, uint slot, __global const GnNode* node) {
-  uint k;
-  for (k = 0u; k < 3u; ++k) {
-    out->planes[2u * k][slot] = node->lo[k];
-    out->planes[2u * k + 1u][slot] = node->hi[k];
-  }
+  __global float* planes = &out->planes[0][slot];
+  const float4 lo = vload4(0, (__global const float*)node), hi = vload4(1, (__global const float*)node);
+  planes[0] = lo.x;
+  planes[GN_WIDTH] = hi.x;
+  planes[2u * GN_WIDTH] = lo.y;
+  planes[3u * GN_WIDTH] = hi.y;
+  planes[4u * GN_WIDTH] = lo.z;
+  planes[5u * GN_WIDTH] = hi.z;
 }
 
-static inline void write_empty_slot(__global GnWideNode* out, uint slot) {
+static inline void write_empty_node(__global GnWideNode* out) {
+  __global float* planes = &out->planes[0][0];
   uint k;
-  for (k = 0u; k < 3u; ++k) {
-    out->planes[2u * k][slot] = INFINITY;
-    out->planes[2u * k + 1u][slot] = -INFINITY;
+  for (k = 0u; k < 6u; k += 2u) {
+    vstore8((float8)(INFINITY), k, planes);
+    vstore8((float8)(-INFINITY), k + 1u, planes);
   }
-  out->links[slot] = GN_NONE;
+  vstore8((uint8)(GN_NONE), 0, out->links);
+  vstore8((uint8)(0u), 0, out->pad);
 }
 
 // Writes (or only numbers) the wide node on top of the stack and puts its children that are nodes in its place, the
@@ -165,6 +217,7 @@ static inline void emit_node(const GnTree* tree, GnEmission* work, int write) {
   uint slot, inner = 0u, entered = 0u;
   gn_open_wide_node(tree->nodes, tree->forests, work->roots[top], tree->costs, &slots);
   for (slot = 0u; slot < slots.count; ++slot) inner += slots.triangles[slot] == 0u;
+  if (write) write_empty_node(out);
   for (slot = 0u; slot < slots.count; ++slot) {
     const uint triangles = slots.triangles[slot];
     uint link;
@@ -186,10 +239,6 @@ static inline void emit_node(const GnTree* tree, GnEmission* work, int write) {
       out->links[slot] = link;
     }
   }
-  if (write) {
-    for (; slot < GN_WIDTH; ++slot) write_empty_slot(out, slot);
-    for (slot = 0u; slot < GN_WIDTH; ++slot) out->pad[slot] = 0u;
-  }
   work->next_node += inner;
   work->height = top + inner;
   work->deepest = max(work->deepest, depth);
@@ -209,6 +258,27 @@ static inline void start_emission(GnEmission* work, uint root, uint place, uint 
 
 static inline uint triangles_below(const GnTree* tree, uint node) {
   return gn_forest_of(tree->nodes, tree->forests, node, tree->costs.block).triangles;
+}
+
+// What the wide nodes of a subtree are made from: its splits have neighbouring ranks, its triangles neighbouring places.
+static inline void expect_subtree(const GnTree* tree, uint root, int triangles) {
+  uint left = root, right = root, first, last;
+  if (tree->nodes[root].count > 0u) return;
+  do {
+    first = tree->nodes[left].first;
+    left = first;
+  } while (tree->nodes[left].count == 0u);
+  do {
+    last = tree->nodes[right].first;
+    right = last + 1u;
+  } while (tree->nodes[right].count == 0u);
+  expect_range(tree->nodes + first, (last + 2u - first) * sizeof(GnNode));
+  expect_range(tree->forests + (first - 1u) / 2u, ((last - first) / 2u + 1u) * sizeof(GnForest));
+  if (triangles) {
+    const uint begin = tree->nodes[left].first;
+    const uint end = tree->nodes[right].first + tree->nodes[right].count;
+    expect_range(tree->triangles + begin, (end - begin) * sizeof(GnLeafTriangle));
+  }
 }
 
 #define GN_TREE_PARAMETERS                                                                                         \
@@ -258,6 +328,7 @@ __kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks,
   const GnTree tree = GN_TREE;
   GnEmission work;
   if (index >= task_count) return;
+  expect_subtree(&tree, tasks[index].root, 0);
   start_emission(&work, tasks[index].root, 0u, 0u, 0u, 0u);
   while (work.height > 0u) emit_node(&tree, &work, 0);
   tasks[index].nodes_below = work.next_node;
@@ -272,6 +343,7 @@ __kernel void emit_subtrees(GN_TREE_PARAMETERS, __global const GnCollapseTask* t
   const GnTree tree = GN_TREE;
   GnEmission work;
   if (index >= task_count) return;
+  expect_subtree(&tree, tasks[index].root, 1);
   start_emission(&work, tasks[index].root, tasks[index].node, tasks[index].depth, tasks[index].nodes_below,
                  tasks[index].blocks_below);
   while (work.height > 0u) emit_node(&tree, &work, 1);

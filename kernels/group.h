@@ -68,6 +68,26 @@ static inline GnBoxPair group_union(GnBoxPair box, volatile __local int* keys) {
 #endif
 }
 
+// Replaces one number of each work-item by the sum of those before it. sums: GN_WGS local numbers, free after the call.
+static inline uint group_sum_before(uint value, __local uint* sums) {
+#if GN_WGS == 1
+  return 0u;
+#else
+  uint step, before = 0u;
+  sums[GN_LOCAL_ID] = value;
+  GN_GROUP_BARRIER();
+  for (step = 1u; step < GN_WGS; step *= 2u) {
+    const uint other = GN_LOCAL_ID >= step ? sums[GN_LOCAL_ID - step] : 0u;
+    GN_GROUP_BARRIER();
+    sums[GN_LOCAL_ID] += other;
+    GN_GROUP_BARRIER();
+  }
+  before = sums[GN_LOCAL_ID] - value;
+  GN_GROUP_BARRIER();
+  return before;
+#endif
+}
+
 static inline void store_bounds(__global GnBounds* out, GnBoxPair box) {
   out->lo[0] = box.lo.x;
   out->lo[1] = box.lo.y;

@@ -1,16 +1,5 @@
 // The first pass of a build: triangles become boxes, and each chunk's bounds are gathered. Feeds the level loop.
-#include "group.h"
-
-static inline int is_traceable(float3 v) {
-  // Also false for NaN. The limit is kMaxCoordinate: areas times counts stay finite below it.
-  return fabs(v.x) <= 0x1p48f && fabs(v.y) <= 0x1p48f && fabs(v.z) <= 0x1p48f;
-}
-
-// gn_without_negative_zero on four lanes at once.
-static inline float4 without_negative_zeros(float4 v) {
-  const uint4 bits = as_uint4(v);
-  return as_float4(select(bits, (uint4)(0u), bits == 0x80000000u));
-}
+#include "triangle_box.h"
 
 // One work-group per chunk of chunk_size triangles. bounds receives two entries per chunk: union of boxes, and bounds
 // of doubled centroids. first_bad receives the lowest index of a triangle with a coordinate that is not finite or
@@ -28,9 +17,9 @@ __kernel void prepare_primitives(__global const float* triangles, __global float
     const float3 a = vload3(3u * (size_t)i, triangles);
     const float3 b = vload3(3u * (size_t)i + 1u, triangles);
     const float3 c = vload3(3u * (size_t)i + 2u, triangles);
-    const float4 lo = without_negative_zeros((float4)(GN_VMIN(GN_VMIN(a, b), c), 0.0f));
-    const float4 hi4 = without_negative_zeros((float4)(GN_VMAX(GN_VMAX(a, b), c), 0.0f));
-    const float4 lo4 = (float4)(lo.xyz, as_float(i));
+    const GnBoxPair box = box_of_corners(a, b, c);
+    const float4 hi4 = box.hi;
+    const float4 lo4 = (float4)(box.lo.xyz, as_float(i));
     if (!is_traceable(a) || !is_traceable(b) || !is_traceable(c)) atomic_min(first_bad, i);
     // In two halves: oclgrind 21.10 does not survive a vector of eight made of two.
     vstore4(lo4, 0, (__global float*)(primitives + i));

@@ -28,8 +28,8 @@ std::string stage_table(const TimedBuild& build) {
   return table.text();
 }
 
-std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const std::string& heuristic,
-                     const TimedBuild& build) {
+std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const Options& options,
+                     const std::string& heuristic, const TimedBuild& build) {
   const double mtris = 1e-3 * static_cast<double>(scene.triangles.size()) / build.total_ms.median;
   Facts facts;
   facts.add("device", describe(device));
@@ -37,6 +37,7 @@ std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const std
   facts.add("build", fixed(build.total_ms.median, 2) + " ms (median of " + std::to_string(build.runs.repeat) +
                          ", " + fixed(build.total_ms.min, 2) + " to " + fixed(build.total_ms.max, 2) + "), " +
                          fixed(mtris, 2) + " Mtris/s");
+  facts.add("builder", to_string(options.build.builder));
   facts.add("heuristic", heuristic);
   facts.add("tree", describe(build));
   facts.add("leaves", fixed(build.stats.mean_leaf, 2) + " triangles on average, " +
@@ -61,8 +62,8 @@ int run(const Options& options, Console& console) {
   add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
   console.print(document);
-  console.print(facts_of(context.device(), scene, describe(options.heuristic, tree, scene), build) + "\n" +
-                stage_table(build));
+  console.print(facts_of(context.device(), scene, options, describe(options.heuristic, tree, scene), build) +
+                "\n" + stage_table(build));
   return 0;
 }
 
@@ -80,14 +81,16 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(
-      "Binned over all three axes. The tree depends on the triangles and the options under \"Tree\" and "
-      "\"Rays\"\n"
-      "alone: its hash is the same on every device. Times by stage are the device's own; the total is wall "
-      "clock\n"
-      "and includes the upload.\n\n" +
+      "Binned over all three axes, or with --builder fast along a curve: built sooner, traced a little "
+      "slower.\n"
+      "The tree depends on the triangles and the options under \"Tree\" and \"Rays\" alone: its hash is the "
+      "same\n"
+      "on every device. Times by stage are the device's own; the total is wall clock and includes the upload."
+      "\n\n" +
       std::string(kHeuristicHelp) +
       "\nExamples:\n  gnomon build model.glb\n  gnomon build gen:city:1M --bins 32 --device gpu --json\n"
       "  gnomon build gen:city:1M --heuristic window --light 0\n"
+      "  gnomon build gen:city:1M --builder fast\n"
       "  gnomon build gen:atrium --heuristic near-plane --point 0,2,0 --direction 1,0,0 --fov 90,60 --share "
       "0.8");
   command->callback(

@@ -40,6 +40,8 @@ void add_tree_options(Json& document, const cl::DeviceInfo& device, std::uint64_
                       const BuildOptions& options) {
   const BuildPlan plan = plan_build(device, triangles, options);
   Json& out = document["options"];
+  const bool balanced = options.builder == Builder::kBalanced;
+  out["builder"] = to_string(options.builder);
   out["heuristic"] = heuristic_name(options);
   out["bins"] = options.bins;
   out["max_leaf"] = options.max_leaf_size;
@@ -47,8 +49,8 @@ void add_tree_options(Json& document, const cl::DeviceInfo& device, std::uint64_
   out["cost_triangle"] = options.cost_triangle;
   out["median_depth"] = options.median_depth;
   out["work_group_size"] = plan.work_group_size;
-  out["subtree_size"] = plan.subtree_size;
-  out["chunk_size"] = plan.chunk_size;
+  out["subtree_size"] = balanced ? Json(plan.subtree_size) : Json(nullptr);
+  out["chunk_size"] = balanced ? Json(plan.chunk_size) : Json(nullptr);
 }
 
 void add_build(Json& document, const TimedBuild& build) {

@@ -1,5 +1,7 @@
 #include "options.h"
 
+#include <map>
+
 #include "numbers.h"
 
 namespace gnomon::app {
@@ -76,6 +78,15 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 
 void add_build_options(CLI::App& command, BuildOptions& options) {
   const std::string tree = "Tree";
+  const std::map<std::string, Builder> builders{{to_string(Builder::kBalanced), Builder::kBalanced},
+                                                {to_string(Builder::kFast), Builder::kFast}};
+  command
+      .add_option("--builder", options.builder,
+                  "balanced: top down by the heuristic; fast: along the Morton curve, by surface area")
+      ->transform(CLI::CheckedTransformer(builders).description(""))
+      ->type_name("B")
+      ->group(tree)
+      ->default_str(to_string(options.builder));
   add_count(command, "--bins", options.bins, "split candidates per axis, 2 to 64")->group(tree);
   add_count(command, "--max-leaf", options.max_leaf_size, "triangles in a leaf at most, 1 to 255")
       ->group(tree);

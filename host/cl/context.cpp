@@ -97,6 +97,8 @@ void Context::finish_setup(const ContextOptions& options) {
     throw Error(ErrorCode::kDevice, device_.name + " is big-endian, which gnomon does not support");
   }
   profiles_ = (flags & CL_QUEUE_PROFILING_ENABLE) != 0;
+  large_pages_ =
+      std::make_unique<LargePages>(std::min<std::uint64_t>(options.spare_bytes, device_.global_memory / 8));
   programs_ = std::make_unique<ProgramStore>(context_.get(), device_, options);
   device_.loop_limit = measure_loop_limit(*this);
 }
@@ -105,7 +107,7 @@ Buffer Context::create_buffer(const std::string& name, std::size_t bytes) const 
   const std::size_t size = std::max<std::size_t>(bytes, 1);
   if (const auto reason = why_not_fit(device_, name, size)) throw Error(ErrorCode::kOutOfMemory, *reason);
   if (device_.is_cpu && device_.unified_memory && fills_large_pages(size)) {
-    Handle<cl_mem> memory = create_in_large_pages(context_.get(), size);
+    Handle<cl_mem> memory = large_pages_->create(context_.get(), size);
     if (memory.get() != nullptr) return {std::move(memory), name, size};
   }
   cl_int status = CL_SUCCESS;

@@ -27,9 +27,13 @@ struct Buffer {
 struct ContextOptions {
   bool profiling = true;  // event times per stage; adopted queues keep what they have
   bool use_cache = true;  // keep compiled programs on disk
+  // Large buffers of CPU devices leave their memory for later ones: up to so many bytes, and an eighth of the
+  // device's memory. 0: none.
+  std::size_t spare_bytes = std::size_t{512} << 20U;
   std::optional<std::filesystem::path> cache_folder;  // default: $XDG_CACHE_HOME/gnomon, else ~/.cache/gnomon
 };
 
+class LargePages;
 class ProgramStore;
 
 class Context {
@@ -80,6 +84,7 @@ class Context {
   Handle<cl_command_queue> queue_;
   bool profiles_ = false;
   std::unique_ptr<ProgramStore> programs_;
+  std::unique_ptr<LargePages> large_pages_;
 };
 
 // Whether buffers of these sizes can exist on the device together; if not, a sentence naming the first

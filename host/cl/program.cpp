@@ -112,6 +112,19 @@ ProgramStore::ProgramStore(cl_context context, const DeviceInfo& device, const C
 }
 
 cl_program ProgramStore::get(const std::vector<std::string>& files, const std::string& options) {
+  // Putting sources together takes longer than many a launch. Files of a folder may change, embedded ones do
+  // not.
+  std::string request = options;
+  for (const std::string& file : files) request += '\n' + file;
+  const bool embedded = std::getenv("GNOMON_KERNELS") == nullptr;
+  if (const auto known = asked_for_.find(request); embedded && known != asked_for_.end())
+    return known->second;
+  cl_program const program = put_together(files, options);
+  if (embedded) asked_for_.insert_or_assign(request, program);
+  return program;
+}
+
+cl_program ProgramStore::put_together(const std::vector<std::string>& files, const std::string& options) {
   const std::string all_options = "-cl-std=CL1.2 " + options;
   const std::string source = flatten_all(files);
   std::string key(kCacheFormat);

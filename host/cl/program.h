@@ -45,6 +45,7 @@ class ProgramStore {
   [[nodiscard]] const ProgramStoreStats& stats() const { return stats_; }
 
  private:
+  [[nodiscard]] cl_program put_together(const std::vector<std::string>& files, const std::string& options);
   [[nodiscard]] Handle<cl_program> load_binary(const std::filesystem::path& entry,
                                                const std::string& options);
   [[nodiscard]] Handle<cl_program> compile(const std::string& source, const std::string& options);
@@ -53,8 +54,9 @@ class ProgramStore {
 
   cl_context context_;
   DeviceInfo device_;
-  std::filesystem::path cache_folder_;  // empty: no cache on disk
-  std::map<std::string, Handle<cl_program>> programs_;
+  std::filesystem::path cache_folder_;                  // empty: no cache on disk
+  std::map<std::string, Handle<cl_program>> programs_;  // by what they are made of
+  std::map<std::string, cl_program> asked_for_;         // by embedded files' names and options
   ProgramStoreStats stats_;
 };
 

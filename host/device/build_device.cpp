@@ -7,8 +7,10 @@
 
 #include "gnomon/cl/launch.h"
 #include "gnomon/cl/program.h"
+#include "gnomon/device/build_fast.h"
 #include "gnomon/device/build_plan.h"
 #include "gnomon/device/level_loop.h"
+#include "gnomon/tree/build_reference.h"
 
 namespace gnomon {
 
@@ -88,11 +90,7 @@ class DeviceBuilder {
     const auto bounds =
         context_.download_values<GnBounds>(chunk_bounds_, 2 * static_cast<std::size_t>(chunks));
     const std::uint32_t first_bad = context_.download_values<std::uint32_t>(status_, 1).front();
-    if (first_bad != GN_NONE) {
-      throw Error(ErrorCode::kBadScene,
-                  "triangle " + std::to_string(first_bad) +
-                      " has a coordinate that is not finite or beyond 2^48; drop or repair it");
-    }
+    if (first_bad != GN_NONE) throw_bad_coordinate(first_bad);
     const GnTask root = root_task(bounds, plan_.count);
     const GnHeuristic heuristic = heuristic_of(options_, root.lo, root.hi);
     context_.upload_values<GnHeuristic>(heuristic_, std::span(&heuristic, 1));
@@ -189,9 +187,9 @@ Node empty_root() {
   return node;
 }
 
-void refuse_what_does_not_fit(const cl::DeviceInfo& device, const BuildPlan& plan) {
+void refuse_what_does_not_fit(const cl::DeviceInfo& device, const std::vector<BufferNeed>& needs) {
   std::uint64_t total = 0;
-  for (const BufferNeed& need : plan.buffers()) {
+  for (const BufferNeed& need : needs) {
     if (const auto reason = cl::why_not_fit(device, need.name, need.bytes))
       throw Error(ErrorCode::kOutOfMemory, *reason);
     total += need.bytes;
@@ -204,15 +202,29 @@ void refuse_what_does_not_fit(const cl::DeviceInfo& device, const BuildPlan& pla
   }
 }
 
-DeviceBvh build_planned(const cl::Context& context, cl_mem triangles, const BuildOptions& options,
-                        const BuildPlan& plan, BuildReport* out, const Progress& progress) {
+DeviceBvh build_balanced(const cl::Context& context, cl_mem triangles, std::uint32_t count,
+                         const BuildOptions& options, BuildReport* out, const Progress& progress) {
+  const BuildPlan plan = plan_build(context.device(), count, options);
   DeviceBuilder builder(context, options, plan, triangles);
   DeviceBvh tree = builder.run(progress);
-  if (out != nullptr) {
-    out->stages = builder.times().milliseconds();
-    for (const BufferNeed& need : plan.buffers()) out->scratch_bytes += need.scratch ? need.bytes : 0;
-  }
+  if (out != nullptr) out->stages = builder.times().milliseconds();
   return tree;
+}
+
+// needs: build_memory's.
+DeviceBvh build_checked(const cl::Context& context, cl_mem triangles, std::uint32_t count,
+                        const BuildOptions& options, const std::vector<BufferNeed>& needs, BuildReport* out,
+                        const Progress& progress) {
+  if (out != nullptr) {
+    for (const BufferNeed& need : needs) out->scratch_bytes += need.scratch ? need.bytes : 0;
+  }
+  switch (options.builder) {
+    case Builder::kFast:
+      return build_fast(context, triangles, count, options, out, progress);
+    case Builder::kBalanced:
+      break;
+  }
+  return build_balanced(context, triangles, count, options, out, progress);
 }
 
 }  // namespace
@@ -220,12 +232,13 @@ DeviceBvh build_planned(const cl::Context& context, cl_mem triangles, const Buil
 DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> triangles,
                        const BuildOptions& options, BuildReport* out, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const BuildPlan plan = plan_build(context.device(), triangles.size(), options);
+  const std::vector<BufferNeed> needs = build_memory(context.device(), triangles.size(), options);
   if (triangles.empty()) return upload_bvh(context, {}, {});
-  refuse_what_does_not_fit(context.device(), plan);
+  refuse_what_does_not_fit(context.device(), needs);
   const cl::Buffer input = context.create_buffer("triangles", triangles.size_bytes());
   context.upload_values<Triangle>(input, triangles);
-  DeviceBvh tree = build_planned(context, input.mem.get(), options, plan, out, progress);
+  const auto count = static_cast<std::uint32_t>(triangles.size());
+  DeviceBvh tree = build_checked(context, input.mem.get(), count, options, needs, out, progress);
   if (out != nullptr) {
     out->total_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -236,7 +249,7 @@ DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> tri
 DeviceBvh build_device(const cl::Context& context, cl_mem triangles, std::uint32_t triangle_count,
                        const BuildOptions& options, BuildReport* out, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  const BuildPlan plan = plan_build(context.device(), triangle_count, options);
+  const std::vector<BufferNeed> needs = build_memory(context.device(), triangle_count, options);
   if (triangle_count == 0) return upload_bvh(context, {}, {});
   std::size_t bytes = 0;
   cl::check(clGetMemObjectInfo(triangles, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr), "clGetMemObjectInfo");
@@ -245,8 +258,8 @@ DeviceBvh build_device(const cl::Context& context, cl_mem triangles, std::uint32
                                                  " bytes, " + std::to_string(triangle_count) +
                                                  " triangles need 36 each");
   }
-  refuse_what_does_not_fit(context.device(), plan);
-  DeviceBvh tree = build_planned(context, triangles, options, plan, out, progress);
+  refuse_what_does_not_fit(context.device(), needs);
+  DeviceBvh tree = build_checked(context, triangles, triangle_count, options, needs, out, progress);
   if (out != nullptr) {
     out->total_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

@@ -9,6 +9,15 @@ namespace gnomon {
 
 namespace {
 
+void set_bounds(GnTask& task, const GnBounds& box, const GnBounds& centroids) {
+  std::copy_n(box.lo, 3, task.lo);
+  std::copy_n(box.hi, 3, task.hi);
+  std::copy_n(centroids.lo, 3, task.centroid_lo);
+  std::copy_n(centroids.hi, 3, task.centroid_hi);
+}
+
+}  // namespace
+
 GnBounds empty_bounds() {
   GnBounds box{};
   gn_empty_box(box.lo, box.hi);
@@ -21,15 +30,6 @@ void grow(GnBounds& box, const GnBounds& other) {
     box.hi[k] = gn_max(other.hi[k], box.hi[k]);
   }
 }
-
-void set_bounds(GnTask& task, const GnBounds& box, const GnBounds& centroids) {
-  std::copy_n(box.lo, 3, task.lo);
-  std::copy_n(box.hi, 3, task.hi);
-  std::copy_n(centroids.lo, 3, task.centroid_lo);
-  std::copy_n(centroids.hi, 3, task.centroid_hi);
-}
-
-}  // namespace
 
 GnTask root_task(std::span<const GnBounds> bounds, std::uint32_t count) {
   GnBounds box = empty_bounds();

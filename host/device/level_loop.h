@@ -1,5 +1,6 @@
 // The host's part of building large nodes: turning one level's results into the next level's tasks and
-// chunks. Plain arithmetic on downloaded values, no OpenCL. Feeds build_device.cpp; tested through it.
+// chunks. Plain arithmetic on downloaded values, no OpenCL. Feeds build_device.cpp and
+// build_fast.cpp; tested through them.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +25,10 @@ struct LargeNodes {
   std::vector<std::uint32_t> slots;  // their places in it
   std::vector<GnTask> roots;         // subtrees still to build
 };
+
+// The bounds of nothing, and `box` grown to hold `other` too.
+[[nodiscard]] GnBounds empty_bounds();
+void grow(GnBounds& box, const GnBounds& other);
 
 // The root task from the bounds prepare_primitives gathered: per chunk, boxes and doubled centroids.
 [[nodiscard]] GnTask root_task(std::span<const GnBounds> bounds, std::uint32_t count);

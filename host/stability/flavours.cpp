@@ -3,7 +3,9 @@
 namespace gnomon::stability {
 
 std::vector<Builder> builders() {
-  return {{"balanced", {}}};
+  BuildOptions fast;
+  fast.builder = gnomon::Builder::kFast;
+  return {{"balanced", {}}, {"fast", fast}};
 }
 
 std::vector<Flavour> flavours_of(const cl::DeviceInfo& device) {
@@ -14,8 +16,12 @@ std::vector<Flavour> flavours_of(const cl::DeviceInfo& device) {
   TraceOptions wide;
   wide.flavour = TraceFlavour::kWide;
   flavours.push_back({"wide", wide});
-  wide.portable = true;
+  TraceOptions packet;
+  packet.flavour = TraceFlavour::kPacket;
+  flavours.push_back({"packet", packet});
+  wide.portable = packet.portable = true;
   flavours.push_back({"wide portable", wide});
+  flavours.push_back({"packet portable", packet});
   return flavours;
 }
 

@@ -65,7 +65,30 @@ void check_leaves(const PublishedLeaves& l) {
           std::to_string(l.max_area), ">= 0");
 }
 
+// What the fast builder cannot do is refused, not ignored.
+void check_fast(const BuildOptions& options) {
+  const auto refuse = [](const std::string& what) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "builder fast divides by surface area along the Morton curve alone: it cannot heed " + what +
+                    "; use builder balanced");
+  };
+  if (heuristic_name(options) != "sah") refuse("heuristic " + heuristic_name(options));
+  if (options.published_leaves.on) refuse("published_leaves");
+  if (options.median_depth != BuildOptions{}.median_depth)
+    refuse("median_depth = " + std::to_string(options.median_depth));
+}
+
 }  // namespace
+
+const char* to_string(Builder builder) {
+  switch (builder) {
+    case Builder::kBalanced:
+      return "balanced";
+    case Builder::kFast:
+      return "fast";
+  }
+  return "unknown";
+}
 
 const char* to_string(AxisPolicy policy) {
   switch (policy) {
@@ -131,6 +154,8 @@ GnHeuristic heuristic_of(const BuildOptions& options, const float lo[3], const f
 }
 
 void BuildOptions::check() const {
+  require(builder == Builder::kBalanced || builder == Builder::kFast, "builder",
+          std::to_string(static_cast<unsigned>(builder)), "{balanced, fast}");
   check_measure(measure);
   require(static_cast<std::uint32_t>(axes) <= GN_AXES_LSPH, "axes",
           std::to_string(static_cast<unsigned>(axes)), "{all, spfh, lsph}");
@@ -149,6 +174,7 @@ void BuildOptions::check() const {
           std::to_string(work_group_size), "{0, powers of two up to 256}");
   require_or_zero(subtree_size, 32, 1048576, "subtree_size", "{0, 32..1048576}");
   require_or_zero(chunk_size, 64, 1048576, "chunk_size", "{0, 64..1048576}");
+  if (builder == Builder::kFast) check_fast(*this);
 }
 
 }  // namespace gnomon

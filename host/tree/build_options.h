@@ -9,6 +9,13 @@
 
 namespace gnomon {
 
+// How a tree is built.
+enum class Builder : std::uint32_t {
+  kBalanced,  // top down, binned over three axes, by any measure
+  kFast,      // along the Morton curve, bottom up, by surface area: host/notes/fast-builder.md
+};
+[[nodiscard]] const char* to_string(Builder builder);
+
 // Which axes a node may be divided along (kernels/shared/axis_policy.h).
 enum class AxisPolicy : std::uint32_t {
   kAll = GN_AXES_ALL,    // the cheapest split of all three
@@ -43,6 +50,9 @@ struct PublishedLeaves {
 [[nodiscard]] GnMeasure surface_area_measure();
 
 struct BuildOptions {
+  // kFast reads bins, max_leaf_size and the costs; it refuses other measures, axis policies, published_leaves
+  // and another median_depth.
+  Builder builder = Builder::kBalanced;
   // What a box's hit probability is taken to be. Others than surface area: gnomon/areas/measure.h.
   // measure.area_share mixes one with surface area.
   GnMeasure measure = surface_area_measure();

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "gnomon/shared/axis_policy.h"
+#include "gnomon/tree/build_fast_reference.h"
 
 namespace gnomon {
 
@@ -13,7 +14,7 @@ namespace {
 constexpr float kCoordinateLimit = 281474976710656.0F;  // 2^48, as prepare.cl
 
 // Everything the recursion shares.
-struct Builder {
+struct BuildState {
   const BuildOptions& options;
   std::span<const Triangle> triangles;
   GnHeuristic heuristic;
@@ -23,25 +24,6 @@ struct Builder {
   std::vector<GnTask> open;
   SplitTally tally;
 };
-
-GnPrimitive primitive_of(const Triangle& triangle, std::uint32_t index) {
-  GnPrimitive primitive{};
-  primitive.index = index;
-  for (int k = 0; k < 3; ++k) {
-    for (const float x : {triangle.v0[k], triangle.v1[k], triangle.v2[k]}) {
-      if (!(std::fabs(x) <= kCoordinateLimit)) {
-        throw Error(ErrorCode::kBadScene,
-                    "triangle " + std::to_string(index) +
-                        " has a coordinate that is not finite or beyond 2^48; drop or repair it");
-      }
-    }
-    primitive.lo[k] =
-        gn_without_negative_zero(gn_min(gn_min(triangle.v0[k], triangle.v1[k]), triangle.v2[k]));
-    primitive.hi[k] =
-        gn_without_negative_zero(gn_max(gn_max(triangle.v0[k], triangle.v1[k]), triangle.v2[k]));
-  }
-  return primitive;
-}
 
 // Bounds of the boxes and of the doubled centroids of a range.
 void measure_range(const std::vector<GnPrimitive>& primitives, GnTask& task) {
@@ -60,24 +42,24 @@ void measure_range(const std::vector<GnPrimitive>& primitives, GnTask& task) {
 
 // Where a primitive's bins are taken: twice the middle of its box, or for the published builder three times
 // the barycentre of its triangle.
-float key_of(const Builder& builder, const GnPrimitive& primitive, std::uint32_t axis) {
+float key_of(const BuildState& builder, const GnPrimitive& primitive, std::uint32_t axis) {
   if (!builder.options.published_leaves.on) return primitive.lo[axis] + primitive.hi[axis];
   const Triangle& t = builder.triangles[primitive.index];
   return t.v0[axis] + t.v1[axis] + t.v2[axis];
 }
 
 // Bounds of the keys, on one axis.
-std::pair<float, float> key_bounds(const Builder& builder, const GnTask& task, std::uint32_t axis) {
+std::pair<float, float> key_bounds(const BuildState& builder, const GnTask& task, std::uint32_t axis) {
   if (!builder.options.published_leaves.on) return {task.centroid_lo[axis], task.centroid_hi[axis]};
   return {3.0F * task.lo[axis], 3.0F * task.hi[axis]};
 }
 
-float bin_scale_on_axis(const Builder& builder, const GnTask& task, std::uint32_t axis) {
+float bin_scale_on_axis(const BuildState& builder, const GnTask& task, std::uint32_t axis) {
   const auto [lo, hi] = key_bounds(builder, task, axis);
   return gn_bin_scale(lo, hi, builder.options.bins);
 }
 
-std::uint32_t bin_on_axis(const Builder& builder, const GnPrimitive& primitive, const GnTask& task,
+std::uint32_t bin_on_axis(const BuildState& builder, const GnPrimitive& primitive, const GnTask& task,
                           std::uint32_t axis) {
   const float base = key_bounds(builder, task, axis).first;
   // Rounding may leave a barycentre below its box; middles never are.
@@ -91,7 +73,7 @@ struct Bins {
 };
 
 // Bins of all three axes, axis after axis.
-Bins bins_of(const Builder& builder, const GnTask& task, std::uint32_t usable) {
+Bins bins_of(const BuildState& builder, const GnTask& task, std::uint32_t usable) {
   const std::uint32_t bins = builder.options.bins;
   Bins out{std::vector<GnBin>(3 * std::size_t{bins}), std::vector<std::uint32_t>(3 * std::size_t{bins})};
   for (GnBin& box : out.boxes) gn_empty_box(box.lo, box.hi);
@@ -110,7 +92,7 @@ Bins bins_of(const Builder& builder, const GnTask& task, std::uint32_t usable) {
   return out;
 }
 
-GnNodeView view_of(const Builder& builder, const GnTask& task) {
+GnNodeView view_of(const BuildState& builder, const GnTask& task) {
   GnNodeView node{};
   std::copy_n(task.lo, 3, node.lo);
   std::copy_n(task.hi, 3, node.hi);
@@ -123,7 +105,7 @@ GnNodeView view_of(const Builder& builder, const GnTask& task) {
   return node;
 }
 
-GnSplit choose_split(const Builder& builder, const GnNodeView& node, int how, const GnTask& task,
+GnSplit choose_split(const BuildState& builder, const GnNodeView& node, int how, const GnTask& task,
                      GnPolicyEffort& effort) {
   GnSplit best = gn_no_split();
   if (node.count < 2 || task.depth >= builder.heuristic.rules.median_depth) return best;
@@ -146,7 +128,7 @@ GnSplit choose_split(const Builder& builder, const GnNodeView& node, int how, co
 }
 
 // Stable, so that leaf order does not depend on how the work is cut.
-std::uint32_t partition(Builder& builder, const GnTask& task, const GnSplit& split) {
+std::uint32_t partition(BuildState& builder, const GnTask& task, const GnSplit& split) {
   const auto first = builder.primitives.begin() + task.begin;
   const auto last = builder.primitives.begin() + task.end;
   if (split.axis == GN_NONE) return task.begin + (task.end - task.begin) / 2;
@@ -162,7 +144,7 @@ void count_split(SplitTally& tally, const GnSplit& split, const GnPolicyEffort& 
   if (effort.fallback_axis != GN_NONE) tally.fallback_on[effort.fallback_axis] += 1;
 }
 
-void push_child(Builder& builder, const GnTask& task, float probability) {
+void push_child(BuildState& builder, const GnTask& task, float probability) {
   GnTask child = task;
   child.probability = probability;
   measure_range(builder.primitives, child);
@@ -178,7 +160,7 @@ GnTask task_of(std::uint32_t begin, std::uint32_t end, std::uint32_t slot, std::
   return task;
 }
 
-void build_node(Builder& builder, const GnTask& task) {
+void build_node(BuildState& builder, const GnTask& task) {
   const GnNodeView view = view_of(builder, task);
   const int how = gn_measure_how(&builder.heuristic.measure, task.lo, task.hi);
   GnPolicyEffort effort{0, GN_NONE};
@@ -203,6 +185,27 @@ void build_node(Builder& builder, const GnTask& task) {
 
 }  // namespace
 
+void throw_bad_coordinate(std::uint32_t triangle) {
+  throw Error(ErrorCode::kBadScene,
+              "triangle " + std::to_string(triangle) +
+                  " has a coordinate that is not finite or beyond 2^48; drop or repair it");
+}
+
+GnPrimitive primitive_of(const Triangle& triangle, std::uint32_t index) {
+  GnPrimitive primitive{};
+  primitive.index = index;
+  for (int k = 0; k < 3; ++k) {
+    for (const float x : {triangle.v0[k], triangle.v1[k], triangle.v2[k]}) {
+      if (!(std::fabs(x) <= kCoordinateLimit)) throw_bad_coordinate(index);
+    }
+    primitive.lo[k] =
+        gn_without_negative_zero(gn_min(gn_min(triangle.v0[k], triangle.v1[k]), triangle.v2[k]));
+    primitive.hi[k] =
+        gn_without_negative_zero(gn_max(gn_max(triangle.v0[k], triangle.v1[k]), triangle.v2[k]));
+  }
+  return primitive;
+}
+
 std::vector<Node> compact_nodes(const std::vector<Node>& sparse, const std::vector<bool>& is_split) {
   std::vector<std::uint32_t> rank(is_split.size());
   std::uint32_t splits = 0;
@@ -223,10 +226,11 @@ std::vector<Node> compact_nodes(const std::vector<Node>& sparse, const std::vect
 
 Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& options, SplitTally* tally) {
   options.check();
+  if (options.builder == Builder::kFast) return build_fast_reference(triangles, options);
   Bvh bvh;
   if (triangles.empty()) return bvh;
   const auto count = static_cast<std::uint32_t>(triangles.size());
-  Builder builder{options, triangles, {}, {}, {}, {}, {}, {}};
+  BuildState builder{options, triangles, {}, {}, {}, {}, {}, {}};
   if (tally != nullptr) builder.tally = *tally;
   builder.primitives.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) builder.primitives.push_back(primitive_of(triangles[i], i));

@@ -21,11 +21,17 @@ struct SplitTally {
   std::array<std::uint64_t, 3> fallback_on{};  // inner nodes whose policy ended with the fallback on x, y, z
 };
 
-// Top-down binned SAH over all three axes (Wald 2007) with the constants of `options`.
-// Throws Error: kInvalidArgument (options), kBadScene (a coordinate that is not finite or beyond 2^48; names
-// the triangle). `tally`, if given, is added to.
+// Top-down binned SAH over all three axes (Wald 2007) with the constants of `options`, or what
+// options.builder says (build_fast_reference.h). Throws Error: kInvalidArgument (options), kBadScene (a
+// coordinate that is not finite or beyond 2^48; names the triangle). `tally`, if given, is added to.
 [[nodiscard]] Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& options = {},
                                   SplitTally* tally = nullptr);
+
+// Throws Error{kBadScene} saying that the triangle has a coordinate which is not finite or beyond 2^48.
+[[noreturn]] void throw_bad_coordinate(std::uint32_t triangle);
+
+// A triangle's box, without negative zeros. Throws as throw_bad_coordinate(index).
+[[nodiscard]] GnPrimitive primitive_of(const Triangle& triangle, std::uint32_t index);
 
 // Dense tree from nodes placed by split position: the children of a split at leaf position m stand at 2m and
 // 2m + 1 of `sparse`, inner nodes link to 2m. is_split[m] says which m are splits. The root is sparse[0].

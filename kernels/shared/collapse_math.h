@@ -122,6 +122,10 @@ GN_INLINE void gn_open_wide_node(GN_GLOBAL const GnNode* nodes, GN_GLOBAL const 
     gn_u32 budget = budgets[height - 1u], share, first;
     gn_f32 cost;
     height -= 1u;
+    if (nodes[node].count > 0u) {
+      gn_enter_slot(slots, node, nodes[node].count, gn_half_area(nodes + node));
+      continue;
+    }
     if (budget < 8u) {
       forest = gn_forest_of(nodes, forests, node, costs.block);
       while (budget > 1u && forest.cost[budget - 1u] == forest.cost[budget - 2u]) budget -= 1u;

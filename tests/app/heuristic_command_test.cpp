@@ -210,3 +210,21 @@ TEST_CASE("a scene without lights or triangles for the rays says so") {
   CHECK(dark.status == 2);
   CHECK_THAT(dark.err, Contains("no lights") && Contains("--direction"));
 }
+
+TEST_CASE("the builder is chosen and named, by every command that builds, and refuses what it cannot heed") {
+  REQUIRE(options_of({}).at("builder") == "balanced");
+  const json options = options_of({"--builder", "fast"});
+  REQUIRE(options.at("builder") == "fast");
+  REQUIRE(options.at("hash") != options_of({}).at("hash"));
+  const auto text = run({"build", "gen:cottage:8k", "--repeat", "1", "--builder", "fast"});
+  REQUIRE_THAT(text.out, Contains("builder") && Contains("fast"));
+  const auto valid = run({"validate", "gen:cottage:8k", "--builder", "fast", "--json"});
+  CAPTURE(valid.err);
+  REQUIRE(valid.status == 0);
+  REQUIRE(json::parse(valid.out).at("options").at("builder") == "fast");
+  require_refused({"--builder", "fast", "--heuristic", "plane", "--direction", "0,-1,0"},
+                  {"builder fast", "pah", "balanced"});
+  require_refused({"--builder", "fast", "--axes", "lsph"}, {"builder fast", "sah+lsph"});
+  require_refused({"--builder", "fast", "--median-depth", "9"}, {"builder fast", "median_depth"});
+  require_refused({"--builder", "slow"}, {"--builder", "slow"});
+}

@@ -1,0 +1,139 @@
+#include "gnomon/tree/refit.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "gnomon/base/error.h"
+#include "gnomon/shared/cost_math.h"
+#include "gnomon/tree/build_reference.h"
+
+namespace gnomon {
+
+namespace {
+
+std::vector<GnPrimitive> checked_boxes(std::span<const GnTriangle> triangles) {
+  std::vector<GnPrimitive> boxes;
+  boxes.reserve(triangles.size());
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) boxes.push_back(primitive_of(triangles[i], i));
+  return boxes;
+}
+
+template <typename Box, typename Other>
+void grow(Box& box, const Other& other) {
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = gn_min(other.lo[k], box.lo[k]);
+    box.hi[k] = gn_max(other.hi[k], box.hi[k]);
+  }
+}
+
+// Parents before children.
+std::vector<std::uint32_t> from_the_root(const Bvh& bvh) {
+  std::vector<std::uint32_t> order;
+  std::vector<std::uint32_t> open{0};
+  while (!open.empty()) {
+    const std::uint32_t node = open.back();
+    open.pop_back();
+    order.push_back(node);
+    if (bvh.nodes[node].count > 0) continue;
+    open.push_back(bvh.nodes[node].first);
+    open.push_back(bvh.nodes[node].first + 1);
+  }
+  return order;
+}
+
+struct Slot {
+  GnPrimitive box{};
+  std::uint32_t link = GN_NONE;
+};
+
+class WideRefit {
+ public:
+  WideRefit(WideBvh& wide, std::span<const GnTriangle> triangles)
+      : wide_(wide), boxes_(checked_boxes(triangles)) {
+    for (TriangleBlock& block : wide.blocks) {
+      for (std::uint32_t lane = 0; lane < GN_WIDTH; ++lane) {
+        if (block.primitives[lane] == GN_NONE) continue;
+        float corners[9];
+        std::memcpy(corners, &triangles[block.primitives[lane]], sizeof corners);
+        for (int k = 0; k < 9; ++k) block.corners[k][lane] = corners[k];
+      }
+    }
+  }
+
+  // The box of all that is below the node. Depth is that of the tree: recursion is shallow.
+  GnPrimitive node(std::uint32_t index) {
+    std::vector<Slot> slots;
+    GnPrimitive whole{};
+    gn_empty_box(whole.lo, whole.hi);
+    for (const std::uint32_t link : wide_.nodes[index].links) {
+      if (link == GN_NONE) continue;
+      slots.push_back({(link & GN_LEAF_LINK) != 0 ? leaf(link) : node(link), link});
+      grow(whole, slots.back().box);
+    }
+    std::stable_sort(slots.begin(), slots.end(), [](const Slot& a, const Slot& b) {
+      return gn_surface_measure(a.box.lo, a.box.hi) < gn_surface_measure(b.box.lo, b.box.hi);
+    });
+    WideNode& out = wide_.nodes[index];
+    for (std::size_t slot = 0; slot < slots.size(); ++slot) {
+      for (int k = 0; k < 3; ++k) {
+        out.planes[2 * k][slot] = slots[slot].box.lo[k];
+        out.planes[2 * k + 1][slot] = slots[slot].box.hi[k];
+      }
+      out.links[slot] = slots[slot].link;
+    }
+    return whole;
+  }
+
+ private:
+  [[nodiscard]] GnPrimitive leaf(std::uint32_t link) const {
+    GnPrimitive box{};
+    gn_empty_box(box.lo, box.hi);
+    for (std::uint32_t i = 0; i < gn_link_triangles(link); ++i) {
+      const TriangleBlock& block = wide_.blocks[gn_link_block(link) + i / GN_WIDTH];
+      grow(box, boxes_[block.primitives[i % GN_WIDTH]]);
+    }
+    return box;
+  }
+
+  WideBvh& wide_;
+  std::vector<GnPrimitive> boxes_;
+};
+
+std::size_t triangles_of(const WideBvh& wide) {
+  std::size_t count = 0;
+  for (const TriangleBlock& block : wide.blocks)
+    count += GN_WIDTH - std::count(block.primitives, block.primitives + GN_WIDTH, GN_NONE);
+  return count;
+}
+
+}  // namespace
+
+void require_count(std::size_t given, std::size_t built) {
+  if (given == built) return;
+  throw Error(ErrorCode::kInvalidArgument, "a tree of " + std::to_string(built) +
+                                               " triangles cannot be refitted to " + std::to_string(given) +
+                                               "; build a new one");
+}
+
+void refit_reference(Bvh& bvh, std::span<const GnTriangle> triangles) {
+  require_count(triangles.size(), bvh.primitives.size());
+  if (triangles.empty()) return;
+  const std::vector<GnPrimitive> boxes = checked_boxes(triangles);
+  const std::vector<std::uint32_t> order = from_the_root(bvh);
+  for (auto index = order.rbegin(); index != order.rend(); ++index) {
+    Node& node = bvh.nodes[*index];
+    gn_empty_box(node.lo, node.hi);
+    for (std::uint32_t i = 0; i < node.count; ++i) grow(node, boxes[bvh.primitives[node.first + i]]);
+    for (std::uint32_t side = 0; side < 2 && node.count == 0; ++side)
+      grow(node, bvh.nodes[node.first + side]);
+  }
+}
+
+void refit_reference(WideBvh& wide, std::span<const GnTriangle> triangles) {
+  require_count(triangles.size(), triangles_of(wide));
+  if (!triangles.empty()) static_cast<void>(WideRefit(wide, triangles).node(0));
+}
+
+}  // namespace gnomon

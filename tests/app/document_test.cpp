@@ -107,9 +107,12 @@ TEST_CASE("trace names the flavour that traced, and takes one") {
   CHECK(wide.at("flavour") == "wide");
   CHECK(thread.at("hits") == wide.at("hits"));
   CHECK(thread.at("boxes_per_ray") != wide.at("boxes_per_ray"));
+  const json packet = traced("packet");
+  CHECK(packet.at("flavour") == "packet");
+  CHECK(packet.at("hits") == thread.at("hits"));
   const json left_to_us = traced("auto");
   CHECK(left_to_us.at("options").at("flavour") == "auto");
-  CHECK((left_to_us.at("flavour") == "thread" || left_to_us.at("flavour") == "wide"));
+  CHECK((left_to_us.at("flavour") == "thread" || left_to_us.at("flavour") == "packet"));
   const auto refused = run({"trace", "gen:cottage:8k", "--flavour", "narrow"});
   CHECK(refused.status == 2);
   CHECK_THAT(refused.err, Catch::Contains("--flavour") && Catch::Contains("wide"));

@@ -17,7 +17,8 @@ struct Plant {
 
 const char* const kRay = "shared/ray_math.h";
 const char* const kHit = "shared/hit_math.h";
-const char* const kWide = "trace_wide.cl";
+const char* const kLeaf = "wide_leaf.h";
+const char* const kWide = "wide_walk.h";
 
 const std::vector<Plant>& plants() {
   static const std::vector<Plant> all{
@@ -28,7 +29,7 @@ const std::vector<Plant>& plants() {
         {kWide, "near = GN_MAX8(near_y, near);", "near = GN_MAX8(near, near_y);"}}},
       {"an edge test that trusts floats",
        "22",
-       {{kHit, "#define GN_EDGE_ERROR 2.3841858e-06f", "#define GN_EDGE_ERROR 0.0f"},
+       {{kHit, "#define GN_EDGE_ERROR_8 2.9802322e-07f", "#define GN_EDGE_ERROR_8 0.0f"},
         {kHit, "#define GN_EDGE_UNDERFLOW 1e-36f", "#define GN_EDGE_UNDERFLOW 0.0f"}}},
       {"an edge test that trusts doubles",
        "22",
@@ -44,13 +45,13 @@ const std::vector<Plant>& plants() {
        {{kRay, "#define GN_SLAB_SLACK 1.9073486e-06f", "#define GN_SLAB_SLACK 0.0f"}}},
       {"boxes behind a negative tmin without their margin",
        "22,24,30",
-       {{kWide, "ray->tmin < 0.0f ? -4.0f * GN_SLAB_SLACK * ray->tmin : 0.0f", "0.0f"}}},
+       {{kLeaf, "ray->tmin < 0.0f ? -4.0f * GN_SLAB_SLACK * ray->tmin : 0.0f", "0.0f"}}},
       {"an end of the range that does not count",
        "12",
        {{"walk.h", "hit.t <= ray->tmax", "hit.t < ray->tmax"}}},
       {"a start of the range that does not count",
        "12",
-       {{kWide, "hit.t >= ray->tmin && ", "hit.t > ray->tmin && "}}},
+       {{kLeaf, "hit.t >= ray->tmin && ", "hit.t > ray->tmin && "}}},
       {"the last of equally near triangles",
        "27",
        {{kHit, "hit->primitive < best->primitive", "hit->primitive > best->primitive"}}},
@@ -62,7 +63,9 @@ const std::vector<Plant>& plants() {
        {{kRay, "magnitude != 0u && magnitude < 0x00800000u", "0"}}},
       {"distances that overflow",
        "32",
-       {{kWide, "const int known = farthest - nearest < INFINITY;", "const int known = 1;"}}},
+       {{kLeaf, "const int known = farthest - nearest < INFINITY;", "const int known = 1;"},
+        {kLeaf, "(u * share * az + v * share * bz + w * share * cz)",
+         "((u * az + v * bz + w * cz) * share)"}}},
       {"a stack of eight nodes, what is above lost",
        "30",
        {{"walk.h", "if (far_entry < INFINITY) {", "if (far_entry < INFINITY && height < 8u) {"}}},

@@ -64,8 +64,10 @@ TEST_CASE("kernels that lose hits near the edges of triangles are caught") {
   // flavour.
   const BrokenKernels broken({{"shared/hit_math.h", "  return -1;", "  return 0;"},
                               {"shared/hit_math.h", "edges.bound = ", "edges.bound = 4096.0f * "},
-                              {"trace_wide.cl", "const float8 bound = ", "const float8 bound = 4096.0f * "},
-                              {"trace_wide.cl", "test_exactly(walk, ray, block, lane, -1);", ";"}});
+                              {"wide_leaf.h", "const float8 bound = ", "const float8 bound = 4096.0f * "},
+                              {"wide_leaf.h", "test_exactly(walk, ray, block, lane, -1);", ";"},
+                              {"packet_leaf.h", "const float8 bound = ", "const float8 bound = 256.0f * "},
+                              {"packet_leaf.h", "      decide(p, rays", "      if (sure) decide(p, rays"}});
   const auto outcome = run(kValidate, broken.setup());
   CAPTURE(outcome.out, outcome.err);
   REQUIRE(outcome.status == 6);
@@ -79,7 +81,7 @@ TEST_CASE("kernels that lose hits near the edges of triangles are caught") {
 }
 
 TEST_CASE("kernels that build boxes too small are caught by the tree alone") {
-  const BrokenKernels broken({{"prepare.cl", "GN_VMAX(GN_VMAX(a, b), c)", "GN_VMAX(a, b)"}});
+  const BrokenKernels broken({{"triangle_box.h", "GN_VMAX(GN_VMAX(a, b), c)", "GN_VMAX(a, b)"}});
   const auto outcome = run(kValidate, broken.setup());
   CAPTURE(outcome.out, outcome.err);
   REQUIRE(outcome.status == 6);
@@ -107,10 +109,10 @@ TEST_CASE("kernels that build boxes too small are caught by the tree alone") {
 TEST_CASE("kernels that do not compile, or are not there, are failures that say so") {
   const BrokenKernels broken(
       {{"trace.cl", "__kernel void trace_closest(", "__kernel void trace_closest(what "},
-       {"trace_wide.cl", "__kernel void trace_closest(", "__kernel void trace_closest(what "}});
+       {"trace_packet.cl", "__kernel void trace_closest(", "__kernel void trace_closest(what "}});
   const auto outcome = run(kValidate, broken.setup());
   CHECK(outcome.status == 1);
-  CHECK_THAT(outcome.err, Contains("build log") && Contains("trace_wide.cl"));
+  CHECK_THAT(outcome.err, Contains("build log") && Contains("trace_packet.cl"));
   const Folder empty;
   const auto missing = run(kValidate, {{{"GNOMON_KERNELS", empty.path().string()}}, false, {}, {}});
   CHECK(missing.status == 1);

@@ -1,10 +1,9 @@
 // The stability catalogue's rays through Embree, default and ROBUST, beside gnomon: how many hits each loses,
-// sees where none are, or gets wrong. One JSON row per case and tracer on stdout. Usage: stability_peer
-// [RAYS-PER-CASE [SEED]]
+// sees where none are, or gets wrong. One JSON row per case and tracer on stdout.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "embree_peer.h"
@@ -86,10 +85,15 @@ void print_row(const CaseInfo& info, const std::string& tracer, const std::strin
 }  // namespace
 
 int main(int argc, char** argv) {
+  gnomon::stability::CatalogueOptions options;
+  options.rays = 4096;
+  CLI::App program(
+      "stability_peer: gnomon stability's rays through gnomon and Embree, one JSON row a case and tracer");
+  program.add_option("--rays-per-case", options.rays, "of one kind on one specimen, about")
+      ->capture_default_str();
+  program.add_option("--seed", options.seed, "for what is drawn at random")->capture_default_str();
+  CLI11_PARSE(program, argc, argv);
   try {
-    gnomon::stability::CatalogueOptions options;
-    options.rays = static_cast<std::uint32_t>(argc > 1 ? std::atoi(argv[1]) : 4096);
-    options.seed = static_cast<std::uint64_t>(argc > 2 ? std::atoi(argv[2]) : 1);
     const gnomon::cl::Context context(gnomon::cl::choose_device(gnomon::cl::list_devices(), ""));
     for (const CaseInfo& info : gnomon::stability::catalogue()) {
       OracleReport ours;

@@ -3,6 +3,7 @@
 // that are nodes lie side by side, what is below them follows child by child: numbers depend on the tree alone, not
 // on the cuts. One work-item a subtree throughout. Options: GN_COLLAPSE_DEPTH, above the binary tree's depth.
 #include "ahead.h"
+#include "children_first.h"
 #include "shared/collapse_math.h"
 
 #ifndef GN_COLLAPSE_DEPTH
@@ -102,28 +103,8 @@ __kernel void weigh_subtrees(__global const GnNode* nodes, __global GnForest* fo
                              uint task_count, float node_cost, float block_cost) {
   const uint task = (uint)get_global_id(0);
   const GnCollapseCosts costs = {node_cost, block_cost};
-  uint waiting[2 * GN_COLLAPSE_DEPTH];
-  uint height = 1u;
   if (task >= task_count) return;
-  waiting[0] = tasks[task];
-  while (height > 0u) {
-    const uint entry = waiting[height - 1u];
-    if (entry & 0x80000000u) {  // its children are done
-      join_children(nodes, forests, entry & 0x7fffffffu, costs);
-      height -= 1u;
-    } else {
-      const uint first = nodes[entry].first;
-      waiting[height - 1u] = entry | 0x80000000u;
-      if (nodes[first + 1u].count == 0u) {
-        waiting[height] = first + 1u;
-        height += 1u;
-      }
-      if (nodes[first].count == 0u) {
-        waiting[height] = first;
-        height += 1u;
-      }
-    }
-  }
+  GN_CHILDREN_FIRST(nodes, tasks[task], join_children(nodes, forests, node, costs))
 }
 
 // One work-item: forests of the nodes above the subtrees, from the last found to the root.

@@ -14,8 +14,8 @@
 #define GN_AHEAD 16u
 
 // Clusters in their order on the curve. boxes: lower corner with what it counts (gn_merge_counts), upper corner with its
-// cost; bits throughout, since small whole numbers are floats that devices may take for zero. planes: the same corners for those who look at many clusters at once: lower x, y, z, upper x, y, z, each from
-// GN_BEFORE on.
+// cost; bits throughout, since small whole numbers are floats that devices may take for zero. planes: the same corners
+// for those who look at many clusters at once: lower x, y, z, upper x, y, z, each from GN_BEFORE on.
 typedef struct GnClusters {
   __local uint* boxes;
   __local float* planes;
@@ -188,8 +188,8 @@ static inline void load_clusters(const GnClusters* clusters, __global const floa
   }
 }
 
-// One work-group per segment. keys: sorted. sorted: receives the triangles in the curve's order. merges: GN_SEGMENT for each segment. remaining: GN_SEGMENT_CLUSTERS for each,
-// remaining_counts says how many of them there are.
+// One work-group per segment. keys: sorted. sorted: receives the triangles in the curve's order. merges: GN_SEGMENT for
+// each segment. remaining: GN_SEGMENT_CLUSTERS for each, remaining_counts says how many of them there are.
 __kernel void merge_segments(__global const float* triangles, __global const uint2* keys,
                              __global GnLeafTriangle* sorted, __global GnMerge* merges, __global GnCluster* remaining, __global uint* remaining_counts, uint count,
                              float cost_traversal, float cost_triangle, uint max_leaf_size) {

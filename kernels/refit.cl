@@ -1,6 +1,7 @@
 // New boxes for a tree whose triangles have moved: same nodes, same leaves, corners and boxes anew. The binary tree is
 // worked on in subtrees (collapse.cl's cut_binary), the wide one level by level from the deepest up. Boxes are those that a
 // builder would have given the same nodes. Not for changing a tree's shape. Options: GN_COLLAPSE_DEPTH as collapse.cl.
+#include "children_first.h"
 #include "shared/collapse_math.h"
 #include "triangle_box.h"
 
@@ -60,28 +61,8 @@ static inline void refit_inner(__global GnNode* nodes, uint node, __global const
 __kernel void refit_subtrees(__global GnNode* nodes, __global const GnLeafTriangle* triangles,
                              __global const uint* tasks, uint task_count) {
   const uint task = (uint)get_global_id(0);
-  uint waiting[2 * GN_COLLAPSE_DEPTH];
-  uint height = 1u;
   if (task >= task_count) return;
-  waiting[0] = tasks[task];
-  while (height > 0u) {
-    const uint entry = waiting[height - 1u];
-    if (entry & 0x80000000u) {  // its children are done
-      refit_inner(nodes, entry & 0x7fffffffu, triangles);
-      height -= 1u;
-    } else {
-      const uint first = nodes[entry].first;
-      waiting[height - 1u] = entry | 0x80000000u;
-      if (nodes[first + 1u].count == 0u) {
-        waiting[height] = first + 1u;
-        height += 1u;
-      }
-      if (nodes[first].count == 0u) {
-        waiting[height] = first;
-        height += 1u;
-      }
-    }
-  }
+  GN_CHILDREN_FIRST(nodes, tasks[task], refit_inner(nodes, node, triangles))
 }
 
 // One work-item: the nodes above the subtrees, from the last found to the root, which may be a leaf.

@@ -81,9 +81,10 @@ void add_build_options(CLI::App& command, BuildOptions& options) {
   const std::map<std::string, Builder> builders{{to_string(Builder::kBalanced), Builder::kBalanced},
                                                 {to_string(Builder::kFast), Builder::kFast}};
   command
-      .add_option("--builder", options.builder,
-                  "balanced: top down by the heuristic; fast: along the Morton curve, by surface area")
-      ->transform(CLI::CheckedTransformer(builders).description(""))
+      .add_option_function<std::string>(
+          "--builder", [&options, builders](const std::string& name) { options.builder = builders.at(name); },
+          "balanced: top down by the heuristic; fast: along the Morton curve, by surface area")
+      ->check(CLI::IsMember({to_string(Builder::kBalanced), to_string(Builder::kFast)}))
       ->type_name("B")
       ->group(tree)
       ->default_str(to_string(options.builder));

@@ -117,7 +117,8 @@ std::vector<Verdict> run_catalogue(const cl::Context& context, const CatalogueOp
   const std::vector<Case> cases = all_cases();
   for (const std::uint32_t number : options.only) {
     if (std::none_of(cases.begin(), cases.end(), [&](const Case& c) { return c.info.number == number; }))
-      throw Error(ErrorCode::kInvalidArgument, "stability: there is no case " + std::to_string(number));
+      throw Error(ErrorCode::kInvalidArgument, "stability: there is no case " + std::to_string(number) +
+                                                   "; gnomon stability --list names them all");
   }
   const Bench bench = bench_of(context, options, progress);
   std::vector<Verdict> verdicts;

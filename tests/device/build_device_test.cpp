@@ -8,26 +8,15 @@
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/bvh_check.h"
 #include "support/device.h"
+#include "support/same_tree.h"
 #include "support/shapes.h"
 
 using gnomon::BuildOptions;
 using gnomon::Bvh;
 using gnomon::test::context;
+using gnomon::test::require_same;
 
 namespace {
-
-// Builds on the device and demands the reference's bytes.
-void require_same(const std::vector<GnTriangle>& triangles, const BuildOptions& options) {
-  const gnomon::DeviceBvh tree = gnomon::build_device(context(), triangles, options);
-  const Bvh device = gnomon::download_bvh(context(), tree);
-  const Bvh reference = gnomon::build_reference(triangles, options);
-  const auto fault = gnomon::check_bvh(device, triangles, options);
-  if (fault) FAIL(fault->what << " at node " << fault->node);
-  REQUIRE(device.nodes.size() == reference.nodes.size());
-  REQUIRE(device.primitives == reference.primitives);
-  REQUIRE(gnomon::tree_hash(device) == gnomon::tree_hash(reference));
-  REQUIRE(tree.max_depth == gnomon::stats_of(reference, options).max_depth);
-}
 
 BuildOptions cut(std::uint32_t work_group_size, std::uint32_t subtree_size, std::uint32_t chunk_size) {
   BuildOptions options;

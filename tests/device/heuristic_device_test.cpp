@@ -6,6 +6,7 @@
 #include "gnomon/tree/bvh_check.h"
 #include "support/device.h"
 #include "support/measures.h"
+#include "support/same_tree.h"
 #include "support/shapes.h"
 
 using gnomon::AxisPolicy;
@@ -18,14 +19,7 @@ namespace {
 // Hash of the tree, after device and reference agreed on it.
 std::string same_tree(const std::vector<GnTriangle>& triangles, const BuildOptions& options) {
   CAPTURE(gnomon::heuristic_name(options), options.work_group_size);
-  const Bvh device = gnomon::download_bvh(context(), gnomon::build_device(context(), triangles, options));
-  const Bvh reference = gnomon::build_reference(triangles, options);
-  const auto fault = gnomon::check_bvh(device, triangles, options);
-  if (fault) FAIL(fault->what << " at node " << fault->node);
-  REQUIRE(device.nodes.size() == reference.nodes.size());
-  REQUIRE(device.primitives == reference.primitives);
-  REQUIRE(gnomon::tree_hash(device) == gnomon::tree_hash(reference));
-  return gnomon::tree_hash(device);
+  return gnomon::test::require_same(triangles, options);
 }
 
 }  // namespace

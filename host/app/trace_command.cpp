@@ -26,6 +26,7 @@ struct Options {
   std::uint64_t seed = 1;
   std::string query;  // closest, any or empty: as the kind asks
   std::string flavour = "auto";
+  bool sort = false;
   std::uint64_t repeat = 5;
   std::string rays_in, rays_out, hits_out;
 };
@@ -69,6 +70,7 @@ void add_trace(Json& document, const Options& options, const TimedTrace& trace, 
   chosen["query"] = any_hit ? "any" : "closest";
   chosen["repeat"] = options.repeat;
   chosen["flavour"] = options.flavour;
+  chosen["sort"] = options.sort;
   document["flavour"] = to_string(trace.flavour);
   document["rays"] = rays;
   document["hits"] = trace.hit_count;
@@ -101,7 +103,7 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
                          std::to_string(trace.mrays_per_s.count) + ", " + fixed(trace.mrays_per_s.min, 3) +
                          " to " + fixed(trace.mrays_per_s.max, 3) + "; " +
                          (trace.device_clock ? "device time)" : "wall clock, transfers included)"));
-  facts.add("flavour", to_string(trace.flavour));
+  facts.add("flavour", std::string(to_string(trace.flavour)) + (options.sort ? ", rays sorted first" : ""));
   facts.add("work", fixed(trace.boxes_per_ray, 2) + " boxes and " + fixed(trace.triangles_per_ray, 2) +
                         " triangles a ray");
   return facts.text();
@@ -117,8 +119,11 @@ int run(const Options& options, Console& console) {
   const TimedBuild build = build_for_use(context, scene, tree, {1, true}, console.progress());
   const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
   stop_if_interrupted();
-  const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, flavour_from(options.flavour),
-                                       options.repeat, console.progress());
+  TraceOptions how;
+  how.flavour = flavour_from(options.flavour);
+  how.sort_rays = options.sort;
+  const TimedTrace trace =
+      trace_timed(context, build.tree, rays, any_hit, how, options.repeat, console.progress());
   stop_if_interrupted();
   if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
   if (!options.hits_out.empty()) write_hits(options.hits_out, trace.hits);
@@ -174,6 +179,9 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
       ->check(CLI::IsMember({"auto", "thread", "wide", "packet"}))
       ->type_name("F")
       ->capture_default_str();
+  command->add_flag("--sort", options->sort,
+                    "sort rays by where they start before tracing them, inside the time; hits stay in their "
+                    "order. Pays for rays in no order, such as bounces from all over the picture");
   add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")
       ->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);

@@ -34,9 +34,7 @@ void count_work(TimedTrace& timed, const TraceResult& counted) {
 }  // namespace
 
 TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::span<const Ray> rays,
-                       bool any_hit, TraceFlavour flavour, std::uint64_t repeat, const Progress& progress) {
-  TraceOptions options;
-  options.flavour = flavour;
+                       bool any_hit, TraceOptions options, std::uint64_t repeat, const Progress& progress) {
   const Tracer tracer(context, tree, options);
   TimedTrace timed;
   timed.flavour = tracer.flavour();

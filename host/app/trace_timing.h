@@ -25,7 +25,7 @@ struct TimedTrace {
 
 // One pass to warm up, `repeat` timed ones, one that counts. Throws as Tracer.
 [[nodiscard]] TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree,
-                                     std::span<const Ray> rays, bool any_hit, TraceFlavour flavour,
+                                     std::span<const Ray> rays, bool any_hit, TraceOptions options,
                                      std::uint64_t repeat, const Progress& progress);
 
 }  // namespace gnomon::app

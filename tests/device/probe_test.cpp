@@ -159,7 +159,8 @@ TEST_CASE("loops make all their turns, or the device is known to end them", "[po
   }
 }
 
-TEST_CASE("every kernel file compiles by itself", "[portable]") {
+// Once per compiler: the default device and Mesa's.
+TEST_CASE("every kernel file compiles by itself") {
   for (const auto& file : cl::embedded_kernels()) {
     if (!file.path.ends_with(".cl")) continue;
     CAPTURE(file.path);

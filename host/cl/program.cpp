@@ -109,8 +109,8 @@ std::filesystem::path default_cache_folder() {
 ProgramStore::ProgramStore(cl_context context, const DeviceInfo& device, const ContextOptions& options)
     : context_(context), device_(device) {
   if (!options.use_cache) return;
-  // Asked for a program's binary, PoCL compiles each of its kernels twice, for any work-group size, and then once
-  // more for the size that is launched.
+  // Asked for a program's binary, PoCL compiles each of its kernels twice, for any work-group size, and then
+  // once more for the size that is launched.
   if (options.cache_folder) {
     cache_folder_ = *options.cache_folder;
   } else if (!device.keeps_programs) {

@@ -25,8 +25,8 @@ struct CatalogueOptions {
 // All cases, by number.
 [[nodiscard]] std::vector<CaseInfo> catalogue();
 
-// Throws Error: kInvalidArgument (a number there is no case of; rays; a builder or flavour that the device does not have),
-// and as builders and tracers do.
+// Throws Error: kInvalidArgument (a number there is no case of; rays; a builder or flavour that the device
+// does not have), and as builders and tracers do.
 [[nodiscard]] std::vector<Verdict> run_catalogue(const cl::Context& context, const CatalogueOptions& options,
                                                  const Progress& progress = {});
 

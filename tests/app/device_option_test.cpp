@@ -59,12 +59,15 @@ TEST_CASE("what does not fit exits 5 and names the buffer") {
   CHECK_THAT(host.err, Contains("out of memory"));
 }
 
-TEST_CASE("--no-cache leaves no compiled program behind, its absence does where the driver keeps none itself") {
+TEST_CASE(
+    "--no-cache leaves no compiled program behind, its absence does where the driver keeps none itself") {
   const Folder folder;
-  program::Setup fresh{{{"XDG_CACHE_HOME", folder.path().string()}, {"RUSTICL_ENABLE", "llvmpipe"}}, false, {}, {}};
-  const auto kept = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), {"build", "gen:random:100"});
-    const auto outcome = run(more, fresh);
+  program::Setup fresh{
+      {{"XDG_CACHE_HOME", folder.path().string()}, {"RUSTICL_ENABLE", "llvmpipe"}}, false, {}, {}};
+  const auto kept = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"build", "gen:random:100"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto outcome = run(arguments, fresh);
     CAPTURE(outcome.err);
     REQUIRE(outcome.status == 0);
     const auto programs = folder.path() / "gnomon";

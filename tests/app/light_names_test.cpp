@@ -1,5 +1,5 @@
-// Whose rays a tree is for is said by number, kind and name: those of the light that was asked for, as `gnomon info`
-// numbers them.
+// Whose rays a tree is for is said by number, kind and name: those of the light that was asked for, as
+// `gnomon info` numbers them.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -11,7 +11,8 @@ using program::run;
 
 namespace {
 
-// One triangle on the ground, and above it lights in the order of their nodes, not of their definitions: each looks down.
+// One triangle on the ground, and above it lights in the order of their nodes, not of their definitions: each
+// looks down.
 const char* const kScene = R"({
   "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3, 4]}],
   "extensionsUsed": ["KHR_lights_punctual"],
@@ -43,7 +44,8 @@ TEST_CASE("the light whose rays count is named as it is in the scene, in words a
   const std::string scene = folder.file("lights.gltf");
   program::write_text(scene, kScene);
   for (std::size_t i = 0; i < kNames.size(); ++i) {
-    std::vector<std::string> words{"build", scene, "--repeat", "1", "--axes", "spfh", "--light", std::to_string(i)};
+    std::vector<std::string> words{"build",  scene,  "--repeat", "1",
+                                   "--axes", "spfh", "--light",  std::to_string(i)};
     const auto text = run(words);
     CAPTURE(i, text.err);
     REQUIRE(text.status == 0);

@@ -58,8 +58,8 @@ TEST_CASE("chosen cases run for every flavour and give one row each") {
 }
 
 TEST_CASE("one builder and one flavour can be chosen, and only such as there are") {
-  const auto outcome = run({"stability", "--only", "1", "--rays-per-case", "16", "--builder", "fast", "--flavour",
-                            "thread", "--json"});
+  const auto outcome = run({"stability", "--only", "1", "--rays-per-case", "16", "--builder", "fast",
+                            "--flavour", "thread", "--json"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.status == 0);
   const json rows = json::parse(outcome.out).at("rows");

@@ -40,7 +40,8 @@ cl::ProgramStoreStats use(const fs::path& folder, bool cache = true) {
   options.cache_folder = folder;
   const cl::Context context(gnomon::test::chosen_device(), options);
   static_cast<void>(context.programs().get({"loop_limit.cl"}, "-DGN_CACHE_TEST=1"));
-  static_cast<void>(context.programs().get({"loop_limit.cl"}, "-DGN_CACHE_TEST=1"));  // the second is in memory
+  static_cast<void>(
+      context.programs().get({"loop_limit.cl"}, "-DGN_CACHE_TEST=1"));  // the second is in memory
   return context.programs().stats();
 }
 

@@ -207,7 +207,8 @@ TEST_CASE("boxes next to the pole measure what the reference says, in yaw and pi
   int one = 0;
   int few = 0;
   for (int i = 0; i < 400; ++i) {
-    // 85 to 86 degrees up or down, the box's size against its distance from the up axis as one step and few allow.
+    // 85 to 86 degrees up or down, the box's size against its distance from the up axis as one step and few
+    // allow.
     const double pitch = static_cast<double>(random.between(85.0F, 86.0F)) * kPi / 180;
     const double level = 10.0 / std::tan(pitch);
     const double yaw = static_cast<double>(random.between(-0.8F, 0.8F));

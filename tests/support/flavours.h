@@ -65,8 +65,8 @@ inline void require_reference_work(const DeviceBvh& tree, const Triangles& trian
   }
 }
 
-// Devices that end loops are never given packets unless a caller demands them, and Mesa takes minutes to compile those
-// kernels: there the ctest entry device_test_rusticl_packets demands them, once.
+// Devices that end loops are never given packets unless a caller demands them, and Mesa takes minutes to
+// compile those kernels: there the ctest entry device_test_rusticl_packets demands them, once.
 inline bool takes_packets() {
   return context().device().loop_limit == 0;
 }

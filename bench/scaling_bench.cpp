@@ -1,7 +1,7 @@
 // The question: how do build and trace grow with triangles, and what does a second compute unit bring?
 // JSON rows on stdout.
 //
-//   scaling_bench sizes [--scenes atrium] [--most 10000000]   one thread, process CPU time
+//   scaling_bench sizes [--scenes terrain,random] [--most 10000000]   one thread, process CPU time
 //   scaling_bench units [--scenes atrium] [--triangles N]     sub-devices of one device, wall time
 //
 // sizes: a size and ten times that size take turns, ten builds of the one against one build of the other, so
@@ -31,10 +31,10 @@ using gnomon::Ray;
 namespace cl = gnomon::cl;
 
 constexpr std::uint64_t kSeed = 1;
-constexpr std::uint64_t kSmallest = 1000;
 
 struct Settings {
-  std::vector<std::string> scenes{"atrium"};
+  std::vector<std::string> scenes{"terrain"};
+  std::uint64_t least = 1000;
   std::uint64_t most = 10'000'000;
   std::uint64_t triangles = 1'000'000;
   std::uint64_t ray_count = 1'048'576;
@@ -163,8 +163,8 @@ void run_sizes(const Settings& settings) {
   const cl::Context context = one_thread_context();
   for (const std::string& name : settings.scenes) {
     const json common = common_row("sizes", context.device(), name);
-    gnomon::Scene small = gnomon::generate_scene(name, kSmallest, kSeed);
-    for (std::uint64_t n = 10 * kSmallest; n <= settings.most; n *= 10) {
+    gnomon::Scene small = gnomon::generate_scene(name, settings.least, kSeed);
+    for (std::uint64_t n = 10 * settings.least; n <= settings.most; n *= 10) {
       gnomon::Scene large = gnomon::generate_scene(name, n, kSeed);
       for (const auto builder : {gnomon::Builder::kBalanced, gnomon::Builder::kFast})
         build_row(common, context, small, large, builder, settings.rounds);
@@ -257,7 +257,7 @@ int main(int argc, char** argv) {
   Settings settings;
   CLI::App program("scaling_bench: how build and trace grow, one JSON row a measurement on stdout");
   program.require_subcommand(1);
-  CLI::App* const sizes = program.add_subcommand("sizes", "from 1,000 triangles up, in steps of ten");
+  CLI::App* const sizes = program.add_subcommand("sizes", "from 1,000 triangles up, times ten each");
   CLI::App* const units = program.add_subcommand("units", "1, 2, 4 ... all compute units of the device");
   for (CLI::App* part : {sizes, units}) {
     part->add_option("--scenes", settings.scenes, "generators, by commas")
@@ -268,8 +268,11 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
   }
+  sizes->add_option("--least", settings.least, "triangles of the smallest scene")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 31U))
+      ->capture_default_str();
   sizes->add_option("--most", settings.most, "triangles of the largest scene")
-      ->check(CLI::Range(10 * kSmallest, std::uint64_t{1} << 31U))
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 31U))
       ->capture_default_str();
   units->add_option("--triangles", settings.triangles, "of the scene")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 31U))

@@ -32,7 +32,7 @@ Json to_json(const Verdict& verdict) {
   row["triangles"] = verdict.triangles;
   add_oracle(row, verdict.oracle);
   row["invalid_rays"] = verdict.invalid_rays;
-  row["tolerance_ulp"] = verdict.most_ulp;
+  row["tolerance_ulp"] = verdict.exact ? Json(verdict.most_ulp) : Json(nullptr);  // else each hit has its own
   row["other_faults"] = verdict.other_faults;
   row["first_fault"] = verdict.first_fault;
   row["ok"] = verdict.ok();

@@ -72,7 +72,7 @@ void check_tree(Findings& findings, const Options& options, const BuildOptions& 
 
 // What is left of the oracle's time is shared evenly by the kinds still to come.
 void check_rays(Findings& findings, const Options& options, const Scene& scene, const Tracer& tracer,
-                const Progress& progress) {
+                bool has_double, const Progress& progress) {
   const auto names = ray_kind_names();
   double seconds_left = options.budget_seconds;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -83,6 +83,7 @@ void check_rays(Findings& findings, const Options& options, const Scene& scene, 
     const double share = std::max(0.0, seconds_left) / static_cast<double>(names.size() - i);
     OracleOptions oracle;
     oracle.max_rays = options.max_rays;
+    oracle.pairs_of_floats = !has_double;
     oracle.time_budget = std::chrono::milliseconds(std::llround(1e3 * share));
     const auto start = Clock::now();
     findings.kinds.push_back(
@@ -166,7 +167,8 @@ int run(const Options& options, Console& console) {
   if (findings.fault) {
     console.note("no rays are sent through a broken tree: they might never come back");
   } else {
-    check_rays(findings, options, scene, Tracer(context, build.tree), console.progress());
+    check_rays(findings, options, scene, Tracer(context, build.tree), context.device().fp64,
+               console.progress());
   }
   stop_if_interrupted();
   if (findings.good() && findings.judged() == 0) {

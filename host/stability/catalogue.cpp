@@ -1,6 +1,7 @@
 #include "gnomon/stability/catalogue.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "gnomon/stability/cases.h"
 #include "gnomon/stability/flavours.h"
@@ -61,7 +62,7 @@ Verdict empty_verdict(const Bench& bench, const CaseInfo& info, const std::strin
   verdict.builder = builder;
   verdict.flavour = flavour;
   verdict.exact = bench.context.device().fp64;
-  verdict.most_ulp = verdict.exact ? kMostUlp : kMostUlpWithoutDouble;
+  verdict.most_ulp = verdict.exact ? kMostUlp : std::numeric_limits<double>::infinity();
   return verdict;
 }
 
@@ -70,6 +71,7 @@ void judge_answers(const Specimen& specimen, std::span<const Hit> hits, std::spa
   OracleOptions options;
   options.max_rays = specimen.rays.size();
   options.time_budget = std::chrono::hours(24);
+  options.pairs_of_floats = !verdict.exact;
   const CandidateTree tree(specimen.triangles.size() < kManyTriangles ? std::span<const Triangle>()
                                                                       : std::span(specimen.triangles));
   if (specimen.triangles.size() >= kManyTriangles) options.tree = &tree;

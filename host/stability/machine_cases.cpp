@@ -167,7 +167,7 @@ std::vector<Verdict> other_devices(const Bench& bench, const CaseInfo& info) {
     for (std::size_t b = 0; b < bench.builders.size(); ++b) {
       Verdict verdict = empty_verdict(bench, info, bench.builders[b].name, device.name);
       verdict.exact = device.fp64;
-      if (!device.fp64) verdict.most_ulp = kMostUlpWithoutDouble;
+      verdict.most_ulp = device.fp64 ? kMostUlp : std::numeric_limits<double>::infinity();
       check_machine(context, expected, bench.builders[b], expected.hashes[b], {},
                     device.fp64 && bench.context.device().fp64, "on " + device.name, verdict);
       all.push_back(verdict);

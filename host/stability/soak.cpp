@@ -71,7 +71,8 @@ class Station {
  public:
   Station(const cl::Context& context, Triangles triangles, const Builder& builder,
           const std::vector<Flavour>& flavours)
-      : triangles_(std::move(triangles)),
+      : pairs_of_floats_(!context.device().fp64),
+        triangles_(std::move(triangles)),
         tree_(build_device(context, triangles_, builder.options)),
         candidates_(triangles_) {
     for (const Flavour& flavour : flavours) tracers_.emplace_back(context, tree_, flavour.options);
@@ -93,6 +94,7 @@ class Station {
     options.max_rays = rays.size();
     options.time_budget = std::chrono::hours(1000);
     options.threads = threads;
+    options.pairs_of_floats = pairs_of_floats_;
     options.tree = &candidates_;
     OracleReport report = judge(triangles_, rays, closest.hits, any.occluded, options);
     for (std::uint64_t& bad : report.bad_rays) bad += part.rays;
@@ -105,6 +107,7 @@ class Station {
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
 
  private:
+  bool pairs_of_floats_;
   Triangles triangles_;
   DeviceBvh tree_;
   CandidateTree candidates_;

@@ -97,7 +97,7 @@ void run(const std::string& generator, const Options& options, Findings& finding
       row.update(row_of(figures));
       print(row);
     }
-    findings.look_at(scene, light, rays, trees);
+    findings.look_at({scene, light, rays, trees});
   }
 }
 
@@ -108,8 +108,7 @@ int main(int argc, char** argv) {
     const Options options = options_from(argc, argv);
     Findings findings;
     for (const std::string& generator : options.scenes) run(generator, options, findings);
-    for (const Claim& claim : findings.claims()) {
-      json row = gnomon::bench::to_json(claim);
+    for (json row : findings.rows()) {
       row.update({{"schema", 1}, {"bench", "failure_map"}, {"commit", GNOMON_COMMIT}});
       print(row);
     }

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -34,6 +35,14 @@ std::string number(double value, const char* format) {
 }
 
 std::string percent(double share) { return number(100.0 * share, std::fabs(share) < 0.0995 ? "%.1f %%" : "%.0f %%"); }
+
+// A table's cell.
+std::string cell_of(const std::string& text) {
+  std::string out(" ");
+  out += text;
+  out += " |";
+  return out;
+}
 
 // As short as it is exact enough to read.
 std::string plain(double value) {
@@ -106,9 +115,11 @@ class Page {
     for (std::size_t i = 0; i < cases_.size(); ++i) {
       const json& row = *find(cases_[i], "SAH");
       const json& rays = row.at("rays");
-      out += "| " + std::to_string(i + 1) + " | " + cases_[i] + " | " + std::to_string(row.at("triangles").get<int>()) +
-             " | " + row.at("light").get<std::string>() + " | " + std::to_string(rays.at("own").get<int>()) + ", " +
-             std::to_string(rays.at("shadow").get<int>()) + ", " + std::to_string(rays.at("other").get<int>()) + " |\n";
+      std::string counts = std::to_string(rays.at("own").get<int>());
+      for (const char* const kind : {"shadow", "other"}) counts.append(", ").append(std::to_string(rays.at(kind).get<int>()));
+      out.append("|").append(cell_of(std::to_string(i + 1))).append(cell_of(cases_[i]));
+      out.append(cell_of(std::to_string(row.at("triangles").get<int>()))).append(cell_of(row.at("light")));
+      out.append(cell_of(counts)).append("\n");
     }
     return out;
   }
@@ -119,7 +130,7 @@ class Page {
     std::string out = "\n## " + title + "\n\n" + words + "\n\n| |";
     std::string line = "|---|";
     for (std::size_t i = 0; i < cases_.size(); ++i) {
-      out += " " + std::to_string(i + 1) + " |";
+      out += cell_of(std::to_string(i + 1));
       line += "---|";
     }
     out += "\n" + line + "\n";
@@ -127,9 +138,9 @@ class Page {
       std::string cells;
       for (const std::string& name : cases_) {
         const json* const row = find(name, method);
-        cells += " " + (row == nullptr ? std::string("–") : cell(*row, *find(name, "SAH"))) + " |";
+        cells += cell_of(row == nullptr ? std::string("–") : cell(*row, *find(name, "SAH")));
       }
-      out += "| " + method + " |" + cells + "\n";
+      out.append("|").append(cell_of(method)).append(cells).append("\n");
     }
     return out;
   }
@@ -145,7 +156,8 @@ class Page {
 
   static std::string bold(double ratio) {
     const std::string text = number(ratio, "%.2f");
-    return ratio > kLoss ? "**" + text + "**" : text;
+    if (ratio <= kLoss) return text;
+    return std::string("**").append(text).append("**");
   }
 
   std::string pierced() const {
@@ -187,14 +199,17 @@ class Page {
     std::string out = "\n## The failures, and why\n\nEach reason comes with numbers that would be otherwise if it were "
                       "wrong. A check that does not hold is marked.\n";
     for (const json& claim : claims_) {
-      out += "\n### " + claim.at("method").get<std::string>() + "\n\n**Fails:** " + claim.at("fails").get<std::string>() +
-             "\n\n**Because** " + claim.at("reason").get<std::string>() + "\n\n**Instead:** " +
-             claim.at("instead").get<std::string>() + "\n\n| check | value | expected |\n|---|---|---|\n";
+      out.append("\n### ").append(claim.at("method").get<std::string>());
+      for (const auto& [label, key] : {std::pair{"**Fails:** ", "fails"}, {"**Because** ", "reason"}, {"**Instead:** ", "instead"}})
+        out.append("\n\n").append(label).append(claim.at(key).get<std::string>());
+      out += "\n\n| check | value | expected |\n|---|---|---|\n";
       for (const json& check : claim.at("checks")) {
         const std::string relation = check.at("relation");
-        out += "| " + check.at("what").get<std::string>() + " | " + plain(check.at("value")) + " | " +
-               (relation == "=" ? "" : relation + " ") + plain(check.at("bound")) +
-               (check.at("holds").get<bool>() ? "" : " **does not hold**") + " |\n";
+        std::string expected = relation;
+        expected.append(" ").append(plain(check.at("bound")));
+        if (!check.at("holds").get<bool>()) expected += ", **does not hold**";
+        out.append("|").append(cell_of(check.at("what"))).append(cell_of(plain(check.at("value"))));
+        out.append(cell_of(expected)).append("\n");
       }
     }
     return out;

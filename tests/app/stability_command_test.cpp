@@ -48,7 +48,8 @@ TEST_CASE("chosen cases run for every flavour and give one row each") {
     CHECK(row.at("ok") == true);
     CHECK(row.at("lost") == 0);
     for (const char* key : kCounts) CHECK(row.at(key).is_number());
-    for (const char* key : {"commit", "device", "driver", "seed", "builder", "flavour", "t_error_ulp"})
+    for (const char* key :
+         {"commit", "device", "driver", "seed", "builder", "flavour", "t_error_ulp", "t_error_steps"})
       CHECK(row.contains(key));
     if (row.at("case") == 1) CHECK(row.at("hits") == row.at("rays"));
     if (row.at("case") == 14) CHECK(row.at("invalid_rays") == row.at("rays"));

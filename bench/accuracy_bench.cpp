@@ -1,11 +1,10 @@
-// The question: what would other kernels gain in speed, and cost in hits? Those of a folder beside the embedded
-// ones, in one process: the time of a batch, and answers held against the embedded kernels', which are exact. One
-// JSON row for each scene, kind of rays and flavour on stdout; then one for each case of the stability catalogue.
+// The question: what does fast accuracy gain in speed, and what does it cost in hits? Beside watertight tracing
+// of the same rays in one process: the time of a batch, and answers held against the exact ones. One JSON row for
+// each scene, kind of rays and flavour on stdout; then one for each case of the stability catalogue.
 //
-//   kernels_bench FOLDER [SCENE TRIANGLES]...
-#include <cmath>
+//   accuracy_bench [SCENE TRIANGLES]...
+#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "gnomon/scene/generators.h"
 #include "gnomon/scene/ray_set.h"
 #include "gnomon/stability/catalogue.h"
+#include "gnomon/tree/hit_difference.h"
 #include "gnomon_commit.h"
 
 namespace {
@@ -27,72 +27,42 @@ constexpr std::uint64_t kSeed = 1;
 constexpr std::uint64_t kRays = 131'072;
 constexpr int kRounds = 9;
 
-// Kernels are read where a tracer is made.
+constexpr gnomon::TraceFlavour kFlavours[] = {gnomon::TraceFlavour::kWide, gnomon::TraceFlavour::kPacket};
+
 gnomon::Tracer tracer_of(const gnomon::cl::Context& context, const gnomon::DeviceBvh& tree,
-                         gnomon::TraceFlavour flavour, const std::string& folder) {
+                         gnomon::TraceFlavour flavour, gnomon::Accuracy accuracy) {
   gnomon::TraceOptions options;
   options.flavour = flavour;
-  if (!folder.empty()) setenv("GNOMON_KERNELS", folder.c_str(), 1);
-  gnomon::Tracer tracer(context, tree, options);
-  unsetenv("GNOMON_KERNELS");
-  return tracer;
+  options.accuracy = accuracy;
+  return {context, tree, options};
 }
 
-struct Differences {
-  std::uint64_t rays = 0;
-  std::uint64_t hits = 0;
-  std::uint64_t lost = 0;
-  std::uint64_t added = 0;
-  std::uint64_t other_triangle = 0;  // at another distance
-  double most_ulp = 0.0;             // of t, where the triangle is the same
-};
-
-void compare(const std::vector<Hit>& exact, const std::vector<Hit>& other, Differences& sum) {
-  sum.rays += exact.size();
-  for (std::size_t i = 0; i < exact.size(); ++i) {
-    const bool hit = exact[i].primitive != GN_NONE;
-    const bool found = other[i].primitive != GN_NONE;
-    sum.hits += hit ? 1 : 0;
-    sum.lost += hit && (!found || other[i].t > exact[i].t * 1.0001F) ? 1 : 0;
-    sum.added += !hit && found ? 1 : 0;
-    if (!hit || !found) continue;
-    if (exact[i].primitive != other[i].primitive) {
-      sum.other_triangle += exact[i].t != other[i].t ? 1 : 0;
-    } else if (exact[i].t != 0.0F) {
-      const double ulp = std::ldexp(1.0, std::ilogb(exact[i].t) - 23);
-      sum.most_ulp = std::max(sum.most_ulp, std::fabs(static_cast<double>(exact[i].t) - other[i].t) / ulp);
-    }
-  }
-}
-
-json to_json(const Differences& d) {
+json to_json(const gnomon::HitDifference& d) {
   return {{"rays", d.rays},
           {"hits", d.hits},
           {"lost", d.lost},
           {"added", d.added},
           {"other_triangle", d.other_triangle},
-          {"most_t_ulp", d.most_ulp}};
+          {"max_t_ulp", d.max_t_ulp}};
 }
 
-struct Folder {
+struct Runs {
   const gnomon::cl::Context& context;
-  std::string path;
 
   [[nodiscard]] json start(const char* kind) const {
     return {{"schema", 1},
-            {"bench", "kernels"},
+            {"bench", "accuracy"},
             {"kind", kind},
             {"commit", GNOMON_COMMIT},
             {"device", context.device().name},
-            {"driver", context.device().driver},
-            {"folder", path}};
+            {"driver", context.device().driver}};
   }
 
   void speed(const gnomon::Scene& scene, const std::string& name, const gnomon::DeviceBvh& tree,
              const std::string& rays_name, const std::vector<Ray>& rays, bool any) const {
-    for (const auto flavour : {gnomon::TraceFlavour::kWide, gnomon::TraceFlavour::kPacket}) {
-      const gnomon::Tracer exact = tracer_of(context, tree, flavour, "");
-      const gnomon::Tracer other = tracer_of(context, tree, flavour, path);
+    for (const auto flavour : kFlavours) {
+      const gnomon::Tracer exact = tracer_of(context, tree, flavour, gnomon::Accuracy::kWatertight);
+      const gnomon::Tracer fast = tracer_of(context, tree, flavour, gnomon::Accuracy::kFast);
       const auto count = static_cast<std::uint32_t>(rays.size());
       const auto in = context.create_buffer("rays", rays.size() * sizeof(Ray));
       const auto out = context.create_buffer("answers", rays.size() * sizeof(Hit));
@@ -103,10 +73,10 @@ struct Folder {
                                : tracer.enqueue_closest(in.mem.get(), out.mem.get(), count));
         };
       };
-      std::vector<Contestant> contest{{"embedded", work(exact)}, {"folder", work(other)}};
+      std::vector<Contestant> contest{{"watertight", work(exact)}, {"fast", work(fast)}};
       run_contest(contest, kRounds);
-      Differences differences;
-      compare(exact.closest(rays).hits, other.closest(rays).hits, differences);
+      const auto cost = any ? gnomon::difference_of(exact.any(rays).occluded, fast.any(rays).occluded)
+                            : gnomon::difference_of(exact.closest(rays).hits, fast.closest(rays).hits);
       json row = start("speed");
       row.update({{"scene", name},
                   {"scene_hash", gnomon::scene_hash(scene)},
@@ -118,7 +88,7 @@ struct Folder {
                   {"clock", "process CPU time"},
                   {"threads", 1},
                   {"ratio", spread_json(speed_ratios(contest[1].cpu_seconds, contest[0].cpu_seconds))},
-                  {"closest", to_json(differences)}});
+                  {"cost", to_json(cost)}});
       std::printf("%s\n", row.dump().c_str());
       std::fflush(stdout);
     }
@@ -129,7 +99,7 @@ struct Folder {
     const gnomon::DeviceBvh tree = gnomon::build_device(context, scene.triangles);
     const std::vector<Ray> primary = gnomon::primary_rays(scene, kRays, kSeed);
     const std::vector<Hit> hits =
-        tracer_of(context, tree, gnomon::TraceFlavour::kWide, "").closest(primary).hits;
+        tracer_of(context, tree, kFlavours[0], gnomon::Accuracy::kWatertight).closest(primary).hits;
     speed(scene, name, tree, "primary", primary, false);
     speed(scene, name, tree, "bounce", gnomon::bounce_rays(scene, primary, hits, kRays, kSeed), false);
     speed(scene, name, tree, "shadow", gnomon::shadow_rays(scene, primary, hits, kRays, kSeed), true);
@@ -138,17 +108,24 @@ struct Folder {
 
   void hard_cases() const {
     for (const auto& info : gnomon::stability::catalogue()) {
-      for (const auto flavour : {gnomon::TraceFlavour::kWide, gnomon::TraceFlavour::kPacket}) {
-        Differences sum;
+      for (const auto flavour : kFlavours) {
+        gnomon::HitDifference sum;
         for (const auto& specimen : gnomon::stability::specimens_of(context, info.number, {})) {
           const gnomon::DeviceBvh tree = gnomon::build_device(context, specimen.triangles);
-          compare(tracer_of(context, tree, flavour, "").closest(specimen.rays).hits,
-                  tracer_of(context, tree, flavour, path).closest(specimen.rays).hits, sum);
+          const auto cost = gnomon::difference_of(
+              tracer_of(context, tree, flavour, gnomon::Accuracy::kWatertight).closest(specimen.rays).hits,
+              tracer_of(context, tree, flavour, gnomon::Accuracy::kFast).closest(specimen.rays).hits);
+          sum.rays += cost.rays;
+          sum.hits += cost.hits;
+          sum.lost += cost.lost;
+          sum.added += cost.added;
+          sum.other_triangle += cost.other_triangle;
+          sum.max_t_ulp = std::max(sum.max_t_ulp, cost.max_t_ulp);
         }
         if (sum.rays == 0) continue;
         json row = start("case");
         row.update(
-            {{"case", info.number}, {"name", info.name}, {"flavour", to_string(flavour)}, {"closest", to_json(sum)}});
+            {{"case", info.number}, {"name", info.name}, {"flavour", to_string(flavour)}, {"cost", to_json(sum)}});
         std::printf("%s\n", row.dump().c_str());
         std::fflush(stdout);
       }
@@ -159,20 +136,16 @@ struct Folder {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "usage: kernels_bench FOLDER [SCENE TRIANGLES]...\n");
-    return 2;
-  }
   try {
     const gnomon::cl::Context context = one_thread_context();
-    const Folder folder{context, argv[1]};
-    SceneList scenes = scenes_from(argc - 1, argv + 1);
-    if (argc == 2) scenes = {{"atrium", 1'000'000}, {"city", 300'000}, {"crowd", 300'000}, {"random", 100'000}};
-    for (const auto& [name, triangles] : scenes) folder.run(name, triangles);
-    folder.hard_cases();
+    const Runs runs{context};
+    SceneList scenes = scenes_from(argc, argv);
+    if (argc == 1) scenes = {{"atrium", 300'000}, {"city", 100'000}, {"crowd", 100'000}, {"random", 50'000}};
+    for (const auto& [name, triangles] : scenes) runs.run(name, triangles);
+    runs.hard_cases();
     return 0;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "kernels_bench: %s\n", error.what());
+    std::fprintf(stderr, "accuracy_bench: %s\n", error.what());
     return 1;
   }
 }

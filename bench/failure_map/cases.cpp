@@ -117,7 +117,9 @@ const std::vector<Recipe>& recipes() {
       {"crowd", 40000, [](const Box3d& box) {
          return std::vector<LightCase>{
              view("crowd, spotlight", "60 by 60 degrees from above, even in steradians", box, {0.2, 3.0, 0.2},
-                  {0.5, 0.0, 0.5}, 60.0, 60.0, RayMeasure::kSolidAngle)};
+                  {0.5, 0.0, 0.5}, 60.0, 60.0, RayMeasure::kSolidAngle),
+             view("crowd, wide view", "130 by 45 degrees from before the crowd, even in yaw and pitch", box,
+                  {0.5, 1.0, -0.25}, {0.5, 0.9, 0.5}, 130.0, 45.0, RayMeasure::kYawPitch)};
        }}};
   return all;
 }

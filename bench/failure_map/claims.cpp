@@ -117,7 +117,7 @@ void Findings::about_measures(const Look& look) {
   if (name == "random, sun along x" || name == "city, sun overhead" || name == "atrium, sun along x") {
     const std::size_t axis = main_axis(look.light.area.frame().forward);
     add("axis", name + ": cuts across the rays, PAH over SAH",
-        share_split_on(look.trees.at("PAH plane"), axis) / share_split_on(look.trees.at("SAH"), axis), '<', 0.6);
+        share_split_on(look.trees.at("PAH plane"), axis) / share_split_on(look.trees.at("SAH"), axis), '<', 0.75);
     add("axis", name + ": triangles a leaf, PAH over SAH",
         look.trees.at("PAH plane").stats.mean_leaf / look.trees.at("SAH").stats.mean_leaf, '>', 1.4);
     add("axis", name + ": what closest hits gain less than all-pierced costs",
@@ -134,7 +134,7 @@ void Findings::about_measures(const Look& look) {
     add("diagonal", name + ": inner nodes split otherwise than SAH's, on any axis",
         std::fabs(share_split_on(look.trees.at("PAH plane"), 0) - share_split_on(look.trees.at("SAH"), 0)), '<', 1e-3);
   }
-  if (name == "city, wide view") {
+  if (name == "crowd, wide view") {
     const TreeFigures& tree = look.trees.at("PAH near plane");
     add("measure", name + ": error of the near plane's prediction",
         error_of(tree, predicted_cost(tree.tree, look.light.area, RayMeasure::kNearPlane)), '>', 0.1);
@@ -257,12 +257,15 @@ void Findings::about_use(const Look& look) {
   if (name == "random, sun along x" || name == "atrium, small window" || name == "forest, slanted sun") {
     const LocalFigures half = local_figures(look.scene, shortened(look.light.area, 0.5), look.rays.own);
     const std::string at = name + ", to half its depth: ";
-    add("local", at + "rays that miss the local tree or leave it unhit pay twice: published rule over the global tree",
-        half.published.cost() / half.global.cost(), '>', 1.0);
-    add("local", at + "exit rule over the global tree", half.by_exit.cost() / half.global.cost(), '<',
-        half.published.cost() / half.global.cost());
-    add("local wrong", at + "hits of the published rule that are not the nearest", static_cast<double>(half.wrong), '>',
-        0.0);
+    const bool pays = name == "atrium, small window";
+    add("local", at + "rays that go on to the global tree", half.left_share, pays ? '<' : '>', pays ? 0.25 : 0.4);
+    add("local", at + "exit rule over the global tree alone", half.by_exit.cost() / half.global.cost(),
+        pays ? '<' : '>', 1.0);
+    add("local", at + "published rule over the exit rule", half.published.cost() / half.by_exit.cost(), '>', 1.0);
+    if (half.share < 0.99 && name != "random, sun along x") {
+      add("local wrong", at + "hits of the published rule that are not the nearest", static_cast<double>(half.wrong),
+          '>', 0.0);
+    }
   }
 }
 

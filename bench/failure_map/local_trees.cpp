@@ -63,7 +63,6 @@ LocalFigures local_figures(const CaseScene& scene, const InfluenceArea& area, st
     up_to_exit.back().tmax = static_cast<float>(*exit * (1.0 - 0x1p-20));
   }
   out.hit_share = hits / count;
-  out.outside_share = static_cast<double>(after.size()) / count;
   std::vector<GnRay> again = after;  // what the published rule asks of it
   const Answers exact = trace(local, inside, up_to_exit);
   const Answers loose = trace(local, inside, to_the_end);
@@ -78,6 +77,7 @@ LocalFigures local_figures(const CaseScene& scene, const InfluenceArea& area, st
       out.wrong += loose.hits[s].t != alone.hits[served[s]].t ? 1 : 0;
     }
   }
+  out.left_share = static_cast<double>(after.size()) / count;
   Work by_exit = exact.work;
   add(by_exit, trace(global, all, after).work);
   Work published = loose.work;

@@ -68,7 +68,7 @@ const std::vector<Claim>& claims() {
        "No share is best everywhere: 1 on the random soup, 0.5 to 0.9 in halls and streets.",
        "the share trades the all-pierced cost, best at 1, against cuts across the rays, which surface area brings and "
        "which count where rays are stopped.",
-       "No mixture unless asked for by `--share`; 0.75 is within a few per cent of the best in all of these cases but the soup."},
+       "No mixture unless asked for by `--share`; 0.75 is within a tenth of the best in each of these cases but the soup."},
       {"samples", "Choosing between trees by sampled rays",
        "Of two trees some per cent apart, 1000 rays each name the wrong one often.",
        "rays differ so much in cost that the mean of 1000 is off by more than the trees are apart.",
@@ -78,7 +78,7 @@ const std::vector<Claim>& claims() {
        "a window of constant pitch is bounded by cones, not planes, and bulges out of the frustum at its corners.",
        "Such rays go to the global tree, whose answers are the same; views of lights are sampled in steradians."},
       {"local", "Local trees, rays that go on behind the area",
-       "Dearer than the global tree alone.",
+       "Dearer than the global tree alone where many rays leave the area unhit; cheaper where few do.",
        "a ray that leaves the region unhit has paid for the local tree and then pays for the global one.",
        "No local trees unless a top level is asked for; with it the global tree is asked from where the ray leaves the "
        "region, not from its start."},

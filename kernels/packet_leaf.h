@@ -169,6 +169,13 @@ static inline void test_triangle(GnPacket* p, __global const float8* rays, __glo
       p->nearest[g] = lanes ? nearest : p->nearest[g];
       p->farthest[g] = lanes ? farthest : p->farthest[g];
       p->place[g] = lanes ? (uint16)place : p->place[g];
+#if GN_FAST
+      {
+        const float16 whole = 1.0f / (u + v + w);
+        p->hit_u[g] = lanes ? v * whole : p->hit_u[g];
+        p->hit_v[g] = lanes ? w * whole : p->hit_v[g];
+      }
+#endif
       p->found[g] |= take;
       p->pending[g] |= take;
     }

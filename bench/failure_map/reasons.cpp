@@ -65,10 +65,10 @@ const std::vector<Claim>& claims() {
        "Costs here are counts of boxes and triangles of real traversals; any hit goes to the largest child first on the "
        "wide tree. SAH stays the default for that reason."},
       {"mixture", "Mixtures of PAH and SAH",
-       "No share is best everywhere: 1 on the random soup, 0.5 to 0.9 in halls and streets.",
+       "No share is best everywhere: 1 on the random soup, 0.5 to 0.9 in most halls, streets and crowds.",
        "the share trades the all-pierced cost, best at 1, against cuts across the rays, which surface area brings and "
        "which count where rays are stopped.",
-       "No mixture unless asked for by `--share`; 0.75 is within a tenth of the best in each of these cases but the soup."},
+       "No mixture unless asked for by `--share`; half and half is within a sixth of the best in each of these cases but the soup."},
       {"samples", "Choosing between trees by sampled rays",
        "Of two trees some per cent apart, 1000 rays each name the wrong one often.",
        "rays differ so much in cost that the mean of 1000 is off by more than the trees are apart.",

@@ -98,7 +98,7 @@ std::vector<Verdict> little_memory(const Bench& bench, const CaseInfo& info) {
              device, static_cast<std::uint32_t>(expected.specimen.triangles.size()), builder.options))
       largest = std::max(largest, need.bytes);
     device.max_allocation = largest;
-    check_machine(cl::Context(device), expected, builder, expected.hashes[b], {}, true,
+    check_machine(cl::Context(device), expected, builder, expected.hashes[b], bench.flavours[0].options, true,
                   "where the largest buffer just fits", verdict);
     device.max_allocation = largest - 1;
     try {

@@ -146,7 +146,7 @@ class Page {
   }
 
   std::string ratios(const std::string& title, const std::string& words, const char* rays) const {
-    return table(title, words + " In SAH's row: of itself.", [&](const json& row, const json& sah) {
+    return table(title, words + " SAH's row: its own.", [&](const json& row, const json& sah) {
       if (row.at("method") == "SAH") return number(work_of(row, rays), "%.0f");
       const double of = work_of(sah, rays);
       if (of == 0.0) return std::string("–");
@@ -162,8 +162,8 @@ class Page {
 
   std::string pierced() const {
     return table("All pierced, the light's own rays",
-                 "The thesis' cost of a ray: everything it pierces to infinity, in no order. In SAH's row: of itself; "
-                 "else over that.",
+                 "The thesis' cost of a ray: everything it pierces to infinity, in no order. SAH's row: its own; "
+                 "the others over that.",
                  [](const json& row, const json& sah) {
                    if (row.at("method") == "SAH") return number(row.at("pierced"), "%.0f");
                    return bold(row.at("pierced").get<double>() / sah.at("pierced").get<double>());

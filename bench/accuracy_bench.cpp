@@ -1,6 +1,7 @@
-// The question: what does fast accuracy gain in speed, and what does it cost in hits? Beside watertight tracing
-// of the same rays in one process: the time of a batch, and answers held against the exact ones. One JSON row for
-// each scene, kind of rays and flavour on stdout; then one for each case of the stability catalogue.
+// The question: what does fast accuracy gain in speed, and what does it cost in hits? Beside watertight
+// tracing of the same rays in one process: the time of a batch, and answers held against the exact ones. One
+// JSON row for each scene, kind of rays and flavour on stdout; then one for each case of the stability
+// catalogue.
 //
 //   accuracy_bench [SCENE TRIANGLES]...
 #include <algorithm>
@@ -124,8 +125,10 @@ struct Runs {
         }
         if (sum.rays == 0) continue;
         json row = start("case");
-        row.update(
-            {{"case", info.number}, {"name", info.name}, {"flavour", to_string(flavour)}, {"cost", to_json(sum)}});
+        row.update({{"case", info.number},
+                    {"name", info.name},
+                    {"flavour", to_string(flavour)},
+                    {"cost", to_json(sum)}});
         std::printf("%s\n", row.dump().c_str());
         std::fflush(stdout);
       }

@@ -1,7 +1,7 @@
-// The question: where do heuristics predict badly, degenerate or lose work, and why? Every way to build a tree
-// under every light of failure_map/cases.cpp, by counts that are the same on every machine: nothing is timed.
-// Then the failures, each with its reason put to a check. One JSON row a line on stdout; failure_map_page
-// makes the page of them.
+// The question: where do heuristics predict badly, degenerate or lose work, and why? Every way to build a
+// tree under every light of failure_map/cases.cpp, by counts that are the same on every machine: nothing is
+// timed. Then the failures, each with its reason put to a check. One JSON row a line on stdout;
+// failure_map_page makes the page of them.
 //
 //   failure_map_bench [--triangles N] [--rays N] [SCENE...]
 #include <cstdio>
@@ -39,7 +39,9 @@ Options options_from(int argc, char** argv) {
   return options;
 }
 
-json to_json(const Work& work) { return {{"boxes", work.boxes}, {"triangles", work.triangles}}; }
+json to_json(const Work& work) {
+  return {{"boxes", work.boxes}, {"triangles", work.triangles}};
+}
 
 json row_of(const TreeFigures& tree) {
   const auto inner = static_cast<double>(tree.tally.inner_nodes > 0 ? tree.tally.inner_nodes : 1);
@@ -79,8 +81,7 @@ json common_of(const CaseScene& scene, const LightCase& light, const CaseRays& r
           {"scene_hash", gnomon::scene_hash(scene.scene)},
           {"triangles", scene.scene.triangles.size()},
           {"seeds", {{"scene", kSceneSeed}, {"rays", kMeasureSeed}, {"fit", kFitSeed}}},
-          {"rays",
-           {{"own", rays.own.size()}, {"shadow", rays.shadow.size()}, {"other", rays.other.size()}}}};
+          {"rays", {{"own", rays.own.size()}, {"shadow", rays.shadow.size()}, {"other", rays.other.size()}}}};
 }
 
 void run(const std::string& generator, const Options& options, Findings& findings) {

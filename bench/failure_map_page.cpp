@@ -1,5 +1,5 @@
-// Writes the page of failures from the rows of failure_map_bench, and from nothing else; or checks that the page
-// is what the rows give.
+// Writes the page of failures from the rows of failure_map_bench, and from nothing else; or checks that the
+// page is what the rows give.
 //
 //   failure_map_page ROWS.jsonl PAGE.md [--check]
 #include <algorithm>
@@ -34,7 +34,9 @@ std::string number(double value, const char* format) {
   return text;
 }
 
-std::string percent(double share) { return number(100.0 * share, std::fabs(share) < 0.0995 ? "%.1f %%" : "%.0f %%"); }
+std::string percent(double share) {
+  return number(100.0 * share, std::fabs(share) < 0.0995 ? "%.1f %%" : "%.0f %%");
+}
 
 // A table's cell.
 std::string cell_of(const std::string& text) {
@@ -75,10 +77,13 @@ class Page {
   std::string text() const {
     return head() + cases() +
            ratios("Closest hit, the light's own rays",
-                  "Boxes plus 1.2 times triangles that a ray tests, nearest child first, over those of SAH's tree.",
+                  "Boxes plus 1.2 times triangles that a ray tests, nearest child first, over those of SAH's "
+                  "tree.",
                   "closest") +
-           ratios("Any hit, shadow rays", "From what a camera sees to the light, lit or not. The same ratio.", "shadow") +
-           ratios("Closest hit, rays that ignore the light", "From anywhere to anywhere. The same ratio.", "other") +
+           ratios("Any hit, shadow rays", "From what a camera sees to the light, lit or not. The same ratio.",
+                  "shadow") +
+           ratios("Closest hit, rays that ignore the light", "From anywhere to anywhere. The same ratio.",
+                  "other") +
            pierced() + predictions() + shapes() + failures();
   }
 
@@ -97,26 +102,35 @@ class Page {
   std::string head() const {
     const json& row = trees_.front();
     return "# Where heuristics fail\n\n"
-           "<!-- Written by failure_map_page from failure_map.jsonl; change the bench and its rows, not this page. -->\n\n"
-           "Ways to build a tree, crossed with lights over generated scenes, in counts: they are exact, and the same on "
-           "every machine. Three axes, 16 bins, leaves by cost, unless the name says otherwise; published and repaired "
-           "are the thesis' axis policies (`host/notes/heuristics.md`) on leaves by cost. Every tree is held against the "
-           "same builder's by surface area (SAH), which is what gnomon builds unless told whose rays the tree is for. "
+           "<!-- Written by failure_map_page from failure_map.jsonl; change the bench and its rows, not this "
+           "page. -->\n\n"
+           "Ways to build a tree, crossed with lights over generated scenes, in counts: they are exact, and "
+           "the same on "
+           "every machine. Three axes, 16 bins, leaves by cost, unless the name says otherwise; published "
+           "and repaired "
+           "are the thesis' axis policies (`host/notes/heuristics.md`) on leaves by cost. Every tree is held "
+           "against the "
+           "same builder's by surface area (SAH), which is what gnomon builds unless told whose rays the "
+           "tree is for. "
            "**Bold**: more than " +
            number(100.0 * (kLoss - 1.0), "%.0f") + " % more work than SAH's tree.\n\nCommit " +
-           row.at("commit").get<std::string>() + ", seeds " + std::to_string(row.at("seeds").at("scene").get<int>()) +
-           " (scenes), " + std::to_string(row.at("seeds").at("rays").get<int>()) + " (rays that measure), " +
-           std::to_string(row.at("seeds").at("fit").get<int>()) + " on (rays that choose). Again: `build/bench/failure_map_bench "
+           row.at("commit").get<std::string>() + ", seeds " +
+           std::to_string(row.at("seeds").at("scene").get<int>()) + " (scenes), " +
+           std::to_string(row.at("seeds").at("rays").get<int>()) + " (rays that measure), " +
+           std::to_string(row.at("seeds").at("fit").get<int>()) +
+           " on (rays that choose). Again: `build/bench/failure_map_bench "
            "> rows`, `build/bench/failure_map_page rows page`.\n\n";
   }
 
   std::string cases() const {
-    std::string out = "| | case | triangles | rays of the light | own, shadow, other |\n|---|---|---|---|---|\n";
+    std::string out =
+        "| | case | triangles | rays of the light | own, shadow, other |\n|---|---|---|---|---|\n";
     for (std::size_t i = 0; i < cases_.size(); ++i) {
       const json& row = *find(cases_[i], "SAH");
       const json& rays = row.at("rays");
       std::string counts = std::to_string(rays.at("own").get<int>());
-      for (const char* const kind : {"shadow", "other"}) counts.append(", ").append(std::to_string(rays.at(kind).get<int>()));
+      for (const char* const kind : {"shadow", "other"})
+        counts.append(", ").append(std::to_string(rays.at(kind).get<int>()));
       out.append("|").append(cell_of(std::to_string(i + 1))).append(cell_of(cases_[i]));
       out.append(cell_of(std::to_string(row.at("triangles").get<int>()))).append(cell_of(row.at("light")));
       out.append(cell_of(counts)).append("\n");
@@ -161,18 +175,20 @@ class Page {
   }
 
   std::string pierced() const {
-    return table("All pierced, the light's own rays",
-                 "The thesis' cost of a ray: everything it pierces to infinity, in no order. SAH's row: its own; "
-                 "the others over that.",
-                 [](const json& row, const json& sah) {
-                   if (row.at("method") == "SAH") return number(row.at("pierced"), "%.0f");
-                   return bold(row.at("pierced").get<double>() / sah.at("pierced").get<double>());
-                 });
+    return table(
+        "All pierced, the light's own rays",
+        "The thesis' cost of a ray: everything it pierces to infinity, in no order. SAH's row: its own; "
+        "the others over that.",
+        [](const json& row, const json& sah) {
+          if (row.at("method") == "SAH") return number(row.at("pierced"), "%.0f");
+          return bold(row.at("pierced").get<double>() / sah.at("pierced").get<double>());
+        });
   }
 
   std::string predictions() const {
     return table("Predictions",
-                 "How far the all-pierced cost is from what was predicted: by the rays' own measure / by surface area.",
+                 "How far the all-pierced cost is from what was predicted: by the rays' own measure / by "
+                 "surface area.",
                  [](const json& row, const json&) {
                    const double real = row.at("pierced");
                    const auto error = [&](const char* by) {
@@ -184,23 +200,26 @@ class Page {
   }
 
   std::string shapes() const {
-    return table("Shapes",
-                 "Depth / triangles a leaf / inner nodes both of whose children measure as much as they do, to the "
-                 "light's rays / overlap of siblings to level 4, as these rays see it.",
-                 [](const json& row, const json&) {
-                   const json& overlap = row.at("overlap_4");
-                   return std::to_string(row.at("depth").get<int>()) + " / " + number(row.at("mean_leaf"), "%.1f") +
-                          " / " + percent(row.at("idle_share")) + " / " +
-                          (overlap.is_null() ? std::string("–") : percent(overlap));
-                 });
+    return table(
+        "Shapes",
+        "Depth / triangles a leaf / inner nodes both of whose children measure as much as they do, to the "
+        "light's rays / overlap of siblings to level 4, as these rays see it.",
+        [](const json& row, const json&) {
+          const json& overlap = row.at("overlap_4");
+          return std::to_string(row.at("depth").get<int>()) + " / " + number(row.at("mean_leaf"), "%.1f") +
+                 " / " + percent(row.at("idle_share")) + " / " +
+                 (overlap.is_null() ? std::string("–") : percent(overlap));
+        });
   }
 
   std::string failures() const {
-    std::string out = "\n## The failures, and why\n\nEach reason comes with numbers that would be otherwise if it were "
-                      "wrong. A check that does not hold is marked.\n";
+    std::string out =
+        "\n## The failures, and why\n\nEach reason comes with numbers that would be otherwise if it were "
+        "wrong. A check that does not hold is marked.\n";
     for (const json& claim : claims_) {
       out.append("\n### ").append(claim.at("method").get<std::string>());
-      for (const auto& [label, key] : {std::pair{"**Fails:** ", "fails"}, {"**Because** ", "reason"}, {"**Instead:** ", "instead"}})
+      for (const auto& [label, key] :
+           {std::pair{"**Fails:** ", "fails"}, {"**Because** ", "reason"}, {"**Instead:** ", "instead"}})
         out.append("\n\n").append(label).append(claim.at(key).get<std::string>());
       out += "\n\n| check | value | expected |\n|---|---|---|\n";
       for (const json& check : claim.at("checks")) {
@@ -232,7 +251,8 @@ int main(int argc, char** argv) {
     const std::string page = Page(read(argv[1])).text();
     if (argc > 3 && std::string(argv[3]) == "--check") {
       const bool same = read(argv[2]) == page;
-      if (!same) std::fprintf(stderr, "%s is not what its rows give: run failure_map_page without --check\n", argv[2]);
+      if (!same)
+        std::fprintf(stderr, "%s is not what its rows give: run failure_map_page without --check\n", argv[2]);
       return same ? 0 : 1;
     }
     std::ofstream(argv[2], std::ios::binary) << page;

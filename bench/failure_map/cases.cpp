@@ -92,11 +92,12 @@ const std::vector<Recipe>& recipes() {
        [](const Box3d& box) {
          return std::vector<LightCase>{
              sun("atrium, sun along x", "parallel along (1, 0, 0)", box, {1.0, 0.0, 0.0}),
-             sun("atrium, small window", "parallel along (-0.4, -0.8, -0.45), a window of a third of each side",
-                 box, kSlanted, 1.0 / 3.0),
+             sun("atrium, small window",
+                 "parallel along (-0.4, -0.8, -0.45), a window of a third of each side", box, kSlanted,
+                 1.0 / 3.0),
              lamp("atrium, lamp", "from a point in the middle, all ways", box, {0.5, 0.4, 0.5}),
-             view("atrium, narrow view", "30 by 20 degrees along the hall, even over the picture's plane", box,
-                  {0.05, 0.3, 0.5}, {0.95, 0.3, 0.5}, 30.0, 20.0, RayMeasure::kNearPlane)};
+             view("atrium, narrow view", "30 by 20 degrees along the hall, even over the picture's plane",
+                  box, {0.05, 0.3, 0.5}, {0.95, 0.3, 0.5}, 30.0, 20.0, RayMeasure::kNearPlane)};
        }},
       {"cottage", 12000,
        [](const Box3d& box) {
@@ -159,7 +160,9 @@ CaseScene make_case(const std::string& generator, std::uint64_t triangles) {
   throw std::runtime_error("no such scene in the failure map: " + generator);
 }
 
-GnMeasure own_measure(const LightCase& light) { return measure_of(light.area, light.rays, true); }
+GnMeasure own_measure(const LightCase& light) {
+  return measure_of(light.area, light.rays, true);
+}
 
 std::vector<Method> methods_for(const LightCase& light) {
   const bool point = light.area.kind() != AreaKind::kPlane;
@@ -180,7 +183,10 @@ std::vector<Method> methods_for(const LightCase& light) {
   untied.options.measure.breaks_ties = 0;
   out.push_back(untied);
   for (const float share : {0.5F, 0.75F, 0.9F}) {
-    Method mixed = by_measure("mixture " + std::string(share == 0.5F ? "0.5" : share == 0.75F ? "0.75" : "0.9"), own);
+    Method mixed = by_measure("mixture " + std::string(share == 0.5F    ? "0.5"
+                                                       : share == 0.75F ? "0.75"
+                                                                        : "0.9"),
+                              own);
     mixed.options.measure.area_share = share;
     out.push_back(mixed);
   }

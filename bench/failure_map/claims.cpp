@@ -2,137 +2,35 @@
 
 #include <cmath>
 
-#include "gnomon/areas/area_rays.h"
-#include "gnomon/areas/measure.h"
-#include "gnomon/areas/projection.h"
-#include "gnomon/measure/node_box.h"
-#include "gnomon/measure/prediction.h"
-#include "gnomon/scene/steady_random.h"
-#include "gnomon/tree/trace_reference.h"
+#include "claim_tools.h"
 #include "local_trees.h"
 
 namespace gnomon::bench {
-
-namespace {
-
-constexpr std::uint64_t kManyRays = 20000;
-
-double of_sah(const Look& look, const std::string& method, Work TreeFigures::*work) {
-  return (look.trees.at(method).*work).cost() / (look.trees.at("SAH").*work).cost();
-}
-
-double pierced_of_sah(const Look& look, const std::string& method) {
-  return look.trees.at(method).pierced.mean / look.trees.at("SAH").pierced.mean;
-}
-
-double error_of(const TreeFigures& tree, double predicted) {
-  return prediction_error(tree.pierced.mean, predicted);
-}
-
-double share_split_on(const TreeFigures& tree, std::size_t axis) {
-  return static_cast<double>(tree.tally.split_on[axis]) / static_cast<double>(tree.tally.inner_nodes);
-}
-
-std::size_t main_axis(const Vec3d& d) {
-  const auto size = [&](std::size_t k) { return std::fabs(d[k]); };
-  return size(0) >= size(1) && size(0) >= size(2) ? 0 : size(1) >= size(2) ? 1 : 2;
-}
-
-// Of inner nodes those that none of the light's rays meet.
-double unseen_share(const Look& look, const TreeFigures& tree) {
-  double inner = 0.0;
-  double unseen = 0.0;
-  for (const Node& node : tree.tree.nodes) {
-    if (node.count > 0) continue;
-    inner += 1.0;
-    unseen += culled_measure(look.light.area, box_of(node), look.light.rays) == 0.0 ? 1.0 : 0.0;
-  }
-  return unseen / inner;
-}
-
-// Any hit of the shadow rays that reach the light, or of those that do not, over SAH's tree.
-double shadow_of_sah(const Look& look, const std::string& method, bool lit) {
-  const std::vector<GnTriangle>& triangles = look.scene.scene.triangles;
-  const Bvh& sah = look.trees.at("SAH").tree;
-  const auto hits = trace_reference(sah, triangles, look.rays.shadow, true).hits;
-  std::vector<GnRay> chosen;
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    if ((hits[i].primitive == GN_NONE) == lit) chosen.push_back(look.rays.shadow[i]);
-  }
-  return work_of(look.trees.at(method).tree, triangles, chosen, true).cost() /
-         work_of(sah, triangles, chosen, true).cost();
-}
-
-// Lines from everywhere through the root's box: what surface area takes all rays for.
-double surface_error(const TreeFigures& tree) {
-  const Box3d root = box_of(tree.tree.nodes.front());
-  const Vec3d middle = 0.5 * (root.lo + root.hi);
-  const double radius = 0.5 * length(root.hi - root.lo);
-  const auto seeds = area_rays(InfluenceArea::omni(middle, radius), RayMeasure::kSolidAngle, kManyRays, kMeasureSeed);
-  SteadyRandom random(kMeasureSeed);
-  std::vector<double> costs;
-  for (const GnRay& seed : seeds) {
-    const Vec3d d{seed.direction[0], seed.direction[1], seed.direction[2]};
-    const AreaFrame frame = look_along(middle - 2.0 * radius * d, d, kWorldUp);
-    double x = 0.0;
-    double y = 0.0;
-    do {
-      x = random.between(-1.0, 1.0);
-      y = random.between(-1.0, 1.0);
-    } while (x * x + y * y > 1.0);
-    const Ray3d line{to_world(frame, {radius * x, radius * y, 0.0}), d};
-    if (intersect(line, root)) costs.push_back(all_pierced_cost(tree.tree, line));
-  }
-  return prediction_error(mean_of(costs).mean, tree.predicted_surface);
-}
-
-// How often two trees' means over 1000 rays each, of different seeds, name another one as cheaper than their exact
-// predictions do.
-double wrong_ranks(const Look& look, const TreeFigures& a, const TreeFigures& b) {
-  constexpr int kTrials = 40;
-  int wrong = 0;
-  for (int i = 0; i < kTrials; ++i) {
-    const auto sample = [&](const TreeFigures& tree, int which) {
-      const auto seed = kFitSeed + 2 * static_cast<std::uint64_t>(i) + static_cast<std::uint64_t>(which);
-      return mean_of(all_pierced_costs(tree.tree, area_rays(look.light.area, look.light.rays, 1000, seed))).mean;
-    };
-    wrong += (sample(a, 0) < sample(b, 1)) != (a.predicted < b.predicted) ? 1 : 0;
-  }
-  return static_cast<double>(wrong) / kTrials;
-}
-
-// The policy with nothing barred: every axis is tried.
-double unbarred_of_sah(const Look& look, const std::string& method) {
-  Method free = method_named(look.light, method);
-  free.options.policy.quality_threshold = 0.0F;
-  free.options.policy.excellent = free.options.policy.acceptable = 1e-6F;
-  const Bvh tree = build_reference(look.scene.scene.triangles, free.options);
-  return work_of(tree, look.scene.scene.triangles, look.rays.own, false).cost() / look.trees.at("SAH").closest.cost();
-}
-
-}  // namespace
 
 void Findings::about_measures(const Look& look) {
   const std::string& name = look.light.name;
   if (name == "random, sun along x" || name == "city, sun overhead" || name == "atrium, sun along x") {
     const std::size_t axis = main_axis(look.light.area.frame().forward);
     add("axis", name + ": cuts across the rays, PAH over SAH",
-        share_split_on(look.trees.at("PAH plane"), axis) / share_split_on(look.trees.at("SAH"), axis), '<', 0.75);
+        share_split_on(look.trees.at("PAH plane"), axis) / share_split_on(look.trees.at("SAH"), axis), '<',
+        0.75);
     add("axis", name + ": triangles a leaf, PAH over SAH",
         look.trees.at("PAH plane").stats.mean_leaf / look.trees.at("SAH").stats.mean_leaf, '>', 1.4);
     add("axis", name + ": what closest hits gain less than all-pierced costs",
         of_sah(look, "PAH plane", &TreeFigures::closest) - pierced_of_sah(look, "PAH plane"), '>', 0.05);
-    add("other", name + ": other rays, PAH over SAH", of_sah(look, "PAH plane", &TreeFigures::other), '>', 1.02);
+    add("other", name + ": other rays, PAH over SAH", of_sah(look, "PAH plane", &TreeFigures::other), '>',
+        1.02);
     add("other", name + ": surface of boxes that counts, PAH over SAH",
         look.trees.at("PAH plane").predicted_surface / look.trees.at("SAH").predicted_surface, '>', 1.1);
-    add("other", name + ": other rays, half SAH mixed in, over SAH", of_sah(look, "mixture 0.5", &TreeFigures::other),
-        '<', 1.15);
+    add("other", name + ": other rays, half SAH mixed in, over SAH",
+        of_sah(look, "mixture 0.5", &TreeFigures::other), '<', 1.15);
   }
   if (name == "random, sun on (1, 1, 1)") {
     add("diagonal", name + ": all-pierced, PAH over SAH, less 1",
         std::fabs(pierced_of_sah(look, "PAH plane") - 1.0), '<', 1e-3);
     add("diagonal", name + ": inner nodes split otherwise than SAH's, on any axis",
-        std::fabs(share_split_on(look.trees.at("PAH plane"), 0) - share_split_on(look.trees.at("SAH"), 0)), '<', 1e-3);
+        std::fabs(share_split_on(look.trees.at("PAH plane"), 0) - share_split_on(look.trees.at("SAH"), 0)),
+        '<', 1e-3);
   }
   if (name == "crowd, wide view") {
     const TreeFigures& tree = look.trees.at("PAH near plane");
@@ -140,8 +38,9 @@ void Findings::about_measures(const Look& look) {
         error_of(tree, predicted_cost(tree.tree, look.light.area, RayMeasure::kNearPlane)), '>', 0.1);
     add("measure", name + ": error of the rays' own", error_of(tree, tree.predicted), '<', 0.02);
     add("measure", name + ": rays a unit of near plane at the corner over those in the middle",
-        std::pow(std::cos(look.light.area.half_window()[0]) * std::cos(look.light.area.half_window()[1]), 3.0), '<',
-        0.2);
+        std::pow(std::cos(look.light.area.half_window()[0]) * std::cos(look.light.area.half_window()[1]),
+                 3.0),
+        '<', 0.2);
     double outside = 0.0;
     for (const GnRay& ray : look.rays.own) {
       outside += look.light.area.contains({ray.origin[0], ray.origin[1], ray.origin[2]}) ? 0.0 : 1.0;
@@ -165,21 +64,25 @@ void Findings::about_measures(const Look& look) {
     CaseRays rays;
     rays.own = area_rays(moved.area, moved.rays, look.rays.own.size(), kMeasureSeed);
     const TreeFigures off = figures_of(look.scene, moved, method_named(moved, method.name), rays);
-    add("face", name + ": the same with the lamp 1e-4 of the scene aside", error_of(off, off.predicted), '<', 0.02);
+    add("face", name + ": the same with the lamp 1e-4 of the scene aside", error_of(off, off.predicted), '<',
+        0.02);
   }
   if (name == "terrain, low sun" || name == "cottage, lamp") {
     const TreeFigures& tree = look.trees.at("SAH");
-    add("sah", name + ": error of surface area's prediction", error_of(tree, tree.predicted_surface), '>', 0.1);
-    add("sah", name + ": the same for lines from everywhere through the scene", surface_error(tree), '<', 0.03);
-    add("sah", name + ": error of the rays' own measure on the same tree", error_of(tree, tree.predicted), '<', 0.03);
+    add("sah", name + ": error of surface area's prediction", error_of(tree, tree.predicted_surface), '>',
+        0.1);
+    add("sah", name + ": the same for lines from everywhere through the scene", surface_error(tree), '<',
+        0.03);
+    add("sah", name + ": error of the rays' own measure on the same tree", error_of(tree, tree.predicted),
+        '<', 0.03);
   }
 }
 
 void Findings::about_policies(const Look& look) {
   const std::string& name = look.light.name;
   if (name == "city, slanted sun" || name == "atrium, lamp" || name == "atrium, narrow view") {
-    add("spfh", name + ": SAH+SPFH published over SAH", of_sah(look, "SAH+SPFH published", &TreeFigures::closest), '>',
-        1.1);
+    add("spfh", name + ": SAH+SPFH published over SAH",
+        of_sah(look, "SAH+SPFH published", &TreeFigures::closest), '>', 1.1);
     add("spfh", name + ": nodes that fell back, of SAH+SPFH published",
         static_cast<double>(look.trees.at("SAH+SPFH published").tally.fallback_on[0] +
                             look.trees.at("SAH+SPFH published").tally.fallback_on[1] +
@@ -187,32 +90,35 @@ void Findings::about_policies(const Look& look) {
             static_cast<double>(look.trees.at("SAH+SPFH published").tally.inner_nodes),
         '>', 0.2);
     add("spfh", name + ": SAH+SPFH repaired, over published",
-        look.trees.at("SAH+SPFH repaired").closest.cost() / look.trees.at("SAH+SPFH published").closest.cost(), '<',
-        1.0);
-    add("spfh", name + ": the same policy, no axis barred, over SAH", unbarred_of_sah(look, "SAH+SPFH repaired"), '<',
-        1.02);
+        look.trees.at("SAH+SPFH repaired").closest.cost() /
+            look.trees.at("SAH+SPFH published").closest.cost(),
+        '<', 1.0);
+    add("spfh", name + ": the same policy, no axis barred, over SAH",
+        unbarred_of_sah(look, "SAH+SPFH repaired"), '<', 1.02);
   }
   if (name == "atrium, sun along x" || name == "atrium, small window") {
-    add("mixed units", name + ": all-pierced, PAH+SPFH published over SAH", pierced_of_sah(look, "PAH+SPFH published"),
-        '>', 1.5);
+    add("mixed units", name + ": all-pierced, PAH+SPFH published over SAH",
+        pierced_of_sah(look, "PAH+SPFH published"), '>', 1.5);
     add("mixed units", name + ": all-pierced, PAH+SPFH repaired over published",
         pierced_of_sah(look, "PAH+SPFH repaired") / pierced_of_sah(look, "PAH+SPFH published"), '<', 0.6);
   }
   if (name == "atrium, sun along x" || name == "cottage, slanted sun") {
-    add("lsph", name + ": SAH+LSPH published over SAH", of_sah(look, "SAH+LSPH published", &TreeFigures::closest), '>',
-        1.2);
-    add("lsph", name + ": SAH+LSPH repaired over SAH", of_sah(look, "SAH+LSPH repaired", &TreeFigures::closest), '>',
-        1.2);
-    add("lsph", name + ": the same policy, no axis barred, over SAH", unbarred_of_sah(look, "SAH+LSPH repaired"), '<',
-        1.02);
+    add("lsph", name + ": SAH+LSPH published over SAH",
+        of_sah(look, "SAH+LSPH published", &TreeFigures::closest), '>', 1.2);
+    add("lsph", name + ": SAH+LSPH repaired over SAH",
+        of_sah(look, "SAH+LSPH repaired", &TreeFigures::closest), '>', 1.2);
+    add("lsph", name + ": the same policy, no axis barred, over SAH",
+        unbarred_of_sah(look, "SAH+LSPH repaired"), '<', 1.02);
   }
   if (name == "atrium, small window") {
-    add("window", name + ": inner nodes that no ray of the window meets", unseen_share(look, look.trees.at("PAH window")),
-        '>', 0.2);
+    add("window", name + ": inner nodes that no ray of the window meets",
+        unseen_share(look, look.trees.at("PAH window")), '>', 0.2);
     add("window", name + ": other rays, PAH window with ties unsettled over SAH",
         of_sah(look, "PAH, ties unsettled", &TreeFigures::other), '>', 1.3);
-    add("window", name + ": other rays, PAH window over SAH", of_sah(look, "PAH window", &TreeFigures::other), '<', 1.3);
-    add("window", name + ": other rays, PAH plane over SAH", of_sah(look, "PAH plane", &TreeFigures::other), '<', 1.05);
+    add("window", name + ": other rays, PAH window over SAH", of_sah(look, "PAH window", &TreeFigures::other),
+        '<', 1.3);
+    add("window", name + ": other rays, PAH plane over SAH", of_sah(look, "PAH plane", &TreeFigures::other),
+        '<', 1.05);
   }
 }
 
@@ -221,7 +127,8 @@ void Findings::about_use(const Look& look) {
   const std::string own = look.light.area.kind() == AreaKind::kPlane ? "PAH window" : "PAH, ties unsettled";
   if (name == "city, wide view" || name == "atrium, small window") {
     add("occluded", name + ": all-pierced, PAH over SAH", pierced_of_sah(look, own), '<', 1.0);
-    add("occluded", name + ": any hit of the same rays, PAH over SAH", of_sah(look, own, &TreeFigures::any), '>', 1.2);
+    add("occluded", name + ": any hit of the same rays, PAH over SAH", of_sah(look, own, &TreeFigures::any),
+        '>', 1.2);
     add("occluded", name + ": what any hit does of what is pierced, on SAH's tree",
         look.trees.at("SAH").any.cost() / look.trees.at("SAH").pierced.mean, '<', 0.6);
     add("occluded", name + ": shadow rays that are blocked, PAH over SAH, less those that are not",
@@ -232,39 +139,46 @@ void Findings::about_use(const Look& look) {
     add("mixture", name + ": all-pierced, share 0.75 over share 1",
         pierced_of_sah(look, "mixture 0.75") / pierced_of_sah(look, "PAH window"), '>', 1.0);
     add("mixture", name + ": closest hits, share 0.75 over share 1",
-        of_sah(look, "mixture 0.75", &TreeFigures::closest) / of_sah(look, "PAH window", &TreeFigures::closest), '<',
-        1.0);
+        of_sah(look, "mixture 0.75", &TreeFigures::closest) /
+            of_sah(look, "PAH window", &TreeFigures::closest),
+        '<', 1.0);
     add("mixture", name + ": cuts across the rays, share 0.75 over share 1",
-        share_split_on(look.trees.at("mixture 0.75"), axis) / share_split_on(look.trees.at("PAH window"), axis), '>',
-        1.0);
+        share_split_on(look.trees.at("mixture 0.75"), axis) /
+            share_split_on(look.trees.at("PAH window"), axis),
+        '>', 1.0);
   }
   if (name == "random, sun along x") {
     add("mixture", name + ": closest hits, share 0.5 over share 1",
-        of_sah(look, "mixture 0.5", &TreeFigures::closest) / of_sah(look, "PAH window", &TreeFigures::closest), '>',
-        1.0);
+        of_sah(look, "mixture 0.5", &TreeFigures::closest) /
+            of_sah(look, "PAH window", &TreeFigures::closest),
+        '>', 1.0);
   }
   if (name == "city, slanted sun") {
     const TreeFigures& a = look.trees.at("PAH window");
     const TreeFigures& b = look.trees.at("SAH");
     add("samples", name + ": standard error of 1000 rays, of the mean",
-        a.pierced.standard_error / a.pierced.mean * std::sqrt(static_cast<double>(look.rays.own.size()) / 1000.0), '>',
-        0.02);
-    add("samples", name + ": how far PAH and SAH are apart, predicted", std::fabs(a.predicted / b.predicted - 1.0), '<',
-        0.04);
-    add("samples", name + ": 40 pairs of 1000 rays that rank them wrongly", wrong_ranks(look, a, b), '>', 0.1);
+        a.pierced.standard_error / a.pierced.mean *
+            std::sqrt(static_cast<double>(look.rays.own.size()) / 1000.0),
+        '>', 0.02);
+    add("samples", name + ": how far PAH and SAH are apart, predicted",
+        std::fabs(a.predicted / b.predicted - 1.0), '<', 0.04);
+    add("samples", name + ": 40 pairs of 1000 rays that rank them wrongly", wrong_ranks(look, a, b), '>',
+        0.1);
     add("samples", name + ": error of the exact prediction", error_of(a, a.predicted), '<', 0.05);
   }
   if (name == "random, sun along x" || name == "atrium, small window" || name == "forest, slanted sun") {
     const LocalFigures half = local_figures(look.scene, shortened(look.light.area, 0.5), look.rays.own);
     const std::string at = name + ", to half its depth: ";
     const bool pays = name == "atrium, small window";
-    add("local", at + "rays that go on to the global tree", half.left_share, pays ? '<' : '>', pays ? 0.25 : 0.4);
+    add("local", at + "rays that go on to the global tree", half.left_share, pays ? '<' : '>',
+        pays ? 0.25 : 0.4);
     add("local", at + "exit rule over the global tree alone", half.by_exit.cost() / half.global.cost(),
         pays ? '<' : '>', 1.0);
-    add("local", at + "published rule over the exit rule", half.published.cost() / half.by_exit.cost(), '>', 1.0);
+    add("local", at + "published rule over the exit rule", half.published.cost() / half.by_exit.cost(), '>',
+        1.0);
     if (half.share < 0.99 && name != "random, sun along x") {
-      add("local wrong", at + "hits of the published rule that are not the nearest", static_cast<double>(half.wrong),
-          '>', 0.0);
+      add("local wrong", at + "hits of the published rule that are not the nearest",
+          static_cast<double>(half.wrong), '>', 0.0);
     }
   }
 }

@@ -48,7 +48,7 @@ struct TreeFigures {
 [[nodiscard]] TreeFigures figures_of(const CaseScene& scene, const LightCase& light, const Method& method,
                                      const CaseRays& rays);
 
-[[nodiscard]] Work work_of(const Bvh& tree, std::span<const GnTriangle> triangles, std::span<const GnRay> rays,
-                           bool any_hit);
+[[nodiscard]] Work work_of(const Bvh& tree, std::span<const GnTriangle> triangles,
+                           std::span<const GnRay> rays, bool any_hit);
 
 }  // namespace gnomon::bench

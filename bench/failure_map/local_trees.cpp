@@ -25,7 +25,9 @@ Answers trace(const Bvh& tree, std::span<const GnTriangle> triangles, std::span<
   return out;
 }
 
-Work a_ray(const Work& all, double count) { return {all.boxes / count, all.triangles / count}; }
+Work a_ray(const Work& all, double count) {
+  return {all.boxes / count, all.triangles / count};
+}
 
 void add(Work& sum, const Work& more) {
   sum.boxes += more.boxes;

@@ -120,9 +120,10 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
                          (trace.device_clock ? "device time)" : "wall clock, transfers included)"));
   facts.add("flavour", to_string(trace.flavour));
   if (trace.cost) {
-    facts.add("fast costs", std::to_string(trace.cost->lost) + " hits lost, " + std::to_string(trace.cost->added) +
-                                " added, " + std::to_string(trace.cost->other_triangle) +
-                                " of another triangle; t off by up to " + fixed(trace.cost->max_t_ulp, 0) + " ulp");
+    facts.add("fast costs",
+              std::to_string(trace.cost->lost) + " hits lost, " + std::to_string(trace.cost->added) +
+                  " added, " + std::to_string(trace.cost->other_triangle) +
+                  " of another triangle; t off by up to " + fixed(trace.cost->max_t_ulp, 0) + " ulp");
   }
   facts.add("work", fixed(trace.boxes_per_ray, 2) + " boxes and " + fixed(trace.triangles_per_ray, 2) +
                         " triangles a ray");
@@ -198,7 +199,8 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
       ->capture_default_str();
   command
       ->add_option("--accuracy", options->accuracy,
-                   "watertight: every hit is decided exactly; fast: by floats alone, about a fifth faster on CPUs, and "
+                   "watertight: every hit is decided exactly; fast: by floats alone, about a fifth faster on "
+                   "CPUs, and "
                    "says which hits that cost")
       ->check(CLI::IsMember({"watertight", "fast"}))
       ->type_name("A")

@@ -22,7 +22,7 @@ struct TimedTrace {
   std::vector<double> wall_seconds;
   Spread mrays_per_s;
   std::optional<HitDifference> cost;  // of fast accuracy, in hits: from a watertight pass over the same rays
-  double boxes_per_ray = 0.0;  // from a pass of its own with counters compiled in
+  double boxes_per_ray = 0.0;         // from a pass of its own with counters compiled in
   double triangles_per_ray = 0.0;
 };
 

@@ -61,7 +61,8 @@ TracePlan plan_trace(const cl::DeviceInfo& device, const TraceOptions& options, 
                      std::uint64_t steps, std::uint32_t state_bytes) {
   if (options.accuracy == Accuracy::kFast) {
     throw Error(ErrorCode::kInvalidArgument,
-                "only the wide and packet flavours trace with fast accuracy; the thread flavour is always watertight");
+                "only the wide and packet flavours trace with fast accuracy; the thread flavour is always "
+                "watertight");
   }
   TracePlan plan = common_plan(device, options);
   plan.stack_size = stack_size_for(max_depth);

@@ -1,6 +1,6 @@
 // Machines that are hard: work-groups of any size, little memory, caches that are cold or damaged, another
-// device. The tree must be the same to the last byte, the hits the oracle's. Devices that fail are simulated in
-// the tests (tests/faults), where calls can be made to.
+// device. The tree must be the same to the last byte, the hits the oracle's. Devices that fail are simulated
+// in the tests (tests/faults), where calls can be made to.
 #include <unistd.h>
 
 #include <algorithm>
@@ -151,8 +151,8 @@ std::vector<Verdict> caches(const Bench& bench, const CaseInfo& info) {
     cl::ContextOptions options;
     options.cache_folder = folder.path();
     check_machine(cl::Context(bench.context.device(), options), expected, bench.builders[0],
-                  expected.hashes[0], bench.flavours[0].options, true, std::string("with a cache that is ") + state,
-                  verdict);
+                  expected.hashes[0], bench.flavours[0].options, true,
+                  std::string("with a cache that is ") + state, verdict);
   }
   return {verdict};
 }

@@ -64,8 +64,8 @@ Ray RaySource::at_place(std::uint32_t kind, bool exactly, SteadyRandom& random, 
   return valid(ray);
 }
 
-// Rays that run together: from a point to corners and edges of triangles side by side, from these to a point, or
-// parallel. All of a bundle draw its course from the bundle's number.
+// Rays that run together: from a point to corners and edges of triangles side by side, from these to a point,
+// or parallel. All of a bundle draw its course from the bundle's number.
 Ray RaySource::in_bundle(std::uint64_t bundle, SteadyRandom& random, SoakPart& part) const {
   SteadyRandom course(~seed_, bundle);
   const std::size_t first = course.below(static_cast<unsigned>(triangles_.size()));

@@ -1,5 +1,5 @@
-// How the answers of one batch differ from the exact ones: what less accuracy costs in hits. Feeds `trace` and
-// the bench of accuracy.
+// How the answers of one batch differ from the exact ones: what less accuracy costs in hits. Feeds `trace`
+// and the bench of accuracy.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@ namespace gnomon {
 
 struct HitDifference {
   std::uint64_t rays = 0;
-  std::uint64_t hits = 0;   // by the exact answers
-  std::uint64_t lost = 0;   // of them, not found, or one farther by more than 1e-4 of t in its place
-  std::uint64_t added = 0;  // where there is none, or one nearer by more than that
+  std::uint64_t hits = 0;            // by the exact answers
+  std::uint64_t lost = 0;            // of them, not found, or one farther by more than 1e-4 of t in its place
+  std::uint64_t added = 0;           // where there is none, or one nearer by more than that
   std::uint64_t other_triangle = 0;  // as far within 1e-4, but another triangle at another t
   double max_t_ulp = 0.0;            // how far t is off at most, of hits of the same triangle
   [[nodiscard]] std::uint64_t wrong() const { return lost + added + other_triangle; }

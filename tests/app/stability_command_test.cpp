@@ -109,8 +109,9 @@ TEST_CASE("a long run gives one row that says all about it, appended to a file")
   CHECK(row.at("false_hits") == 0);
   CHECK(row.at("flavours_differ") == 0);
   const json flavours = row.at("options").at("flavours");
-  CHECK((flavours.size() == 5 || flavours == json::array({"thread"})));  // packets among them where there are any
-  CHECK(row.at("parts").size() == 6);  // three offsets, two builders
+  CHECK((flavours.size() == 5 ||
+         flavours == json::array({"thread"})));  // packets among them where there are any
+  CHECK(row.at("parts").size() == 6);            // three offsets, two builders
   std::uint64_t hits = 0;
   for (const json& step : row.at("t_error_steps")) hits += step[1].get<std::uint64_t>();
   CHECK(hits == row.at("hits"));

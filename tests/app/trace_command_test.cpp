@@ -135,8 +135,8 @@ TEST_CASE("a ray file that cannot be used exits 4") {
 
 TEST_CASE("fast accuracy says which hits it costs; the default costs none and says nothing") {
   const auto trace = [](const char* accuracy) {
-    return run({"trace", "gen:city:3000", "--count", "5000", "--repeat", "1", "--rays", "bounce", "--accuracy",
-                accuracy, "--json"});
+    return run({"trace", "gen:city:3000", "--count", "5000", "--repeat", "1", "--rays", "bounce",
+                "--accuracy", accuracy, "--json"});
   };
   const auto exact = trace("watertight");
   REQUIRE(exact.status == 0);

@@ -127,6 +127,7 @@ TEST_CASE("every kind says how wrong t is, as a distribution that adds up to its
     std::uint64_t hits = 0;
     for (const json& step : kind.at("t_error_steps")) hits += step[1].get<std::uint64_t>();
     CHECK(hits == kind.at("hits"));
-    for (const char* key : {"lost", "false_hits", "wrong_primitive", "t_error_ulp"}) CHECK(kind.contains(key));
+    for (const char* key : {"lost", "false_hits", "wrong_primitive", "t_error_ulp"})
+      CHECK(kind.contains(key));
   }
 }

@@ -1,4 +1,5 @@
-// Fast accuracy: right but for rays at edges, on every flavour that has it; refused where it is not to be had.
+// Fast accuracy: right but for rays at edges, on every flavour that has it; refused where it is not to be
+// had.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -39,11 +40,13 @@ Costs costs_of(const Triangles& triangles, const Rays& rays, TraceFlavour flavou
 TEST_CASE("fast hits are the exact ones but for a few, and t is nearly right", "[unlimited]") {
   const Triangles triangles = gnomon::test::soup(2000, 401, 0.5F);
   Rays rays = gnomon::test::random_rays(4000, 402);
-  for (const auto& [name, bundle] : gnomon::test::bundles(4)) rays.insert(rays.end(), bundle.begin(), bundle.end());
+  for (const auto& [name, bundle] : gnomon::test::bundles(4))
+    rays.insert(rays.end(), bundle.begin(), bundle.end());
   for (const TraceFlavour flavour : {TraceFlavour::kWide, TraceFlavour::kPacket}) {
     for (const bool portable : {false, true}) {
       const Costs costs = costs_of(triangles, rays, flavour, portable);
-      CAPTURE(to_string(flavour), portable, costs.closest.lost, costs.closest.added, costs.any.lost, costs.any.added);
+      CAPTURE(to_string(flavour), portable, costs.closest.lost, costs.closest.added, costs.any.lost,
+              costs.any.added);
       REQUIRE(costs.closest.hits > 2000);
       REQUIRE(costs.closest.wrong() * 1000 < costs.closest.rays);
       REQUIRE(costs.any.wrong() * 1000 < costs.any.rays);

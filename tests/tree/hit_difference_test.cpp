@@ -10,7 +10,9 @@ using gnomon::difference_of;
 
 namespace {
 
-GnHit hit(float t, std::uint32_t primitive) { return {t, 0.25F, 0.25F, primitive}; }
+GnHit hit(float t, std::uint32_t primitive) {
+  return {t, 0.25F, 0.25F, primitive};
+}
 const GnHit kMiss{std::numeric_limits<float>::infinity(), 0, 0, GN_NONE};
 
 gnomon::HitDifference one(const GnHit& exact, const GnHit& other) {

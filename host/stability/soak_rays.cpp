@@ -72,7 +72,7 @@ Ray RaySource::in_bundle(std::uint64_t bundle, SteadyRandom& random, SoakPart& p
   const Point focus = corner(triangles_[first], 0);
   const Point eye = in_bounds(course);
   const std::uint32_t kind = random.below(2);
-  const Point place = place_on(triangles_[(first + random.below(24)) % triangles_.size()], kind, random);
+  const Point place = place_on(triangles_[(first + random.below(6)) % triangles_.size()], kind, random);
   if (bundle % 3 == 1) {  // shadow rays
     Ray ray = towards(place, eye);
     ray.tmin = 0x1p-12F;

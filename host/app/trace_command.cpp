@@ -199,7 +199,7 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
       ->capture_default_str();
   command
       ->add_option("--accuracy", options->accuracy,
-                   "watertight: every hit is decided exactly; fast: by floats alone, about a fifth faster on "
+                   "watertight: every hit is decided exactly; fast: by floats alone, about a tenth faster on "
                    "CPUs, and "
                    "says which hits that cost")
       ->check(CLI::IsMember({"watertight", "fast"}))

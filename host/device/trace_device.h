@@ -31,7 +31,7 @@ enum class TraceFlavour : std::uint32_t {
 // What hits are worth.
 enum class Accuracy : std::uint32_t {
   kWatertight,  // decided exactly, t right to the last bit or so (host/notes/exact-hits.md)
-  // By floats alone, wide and packet flavours only: about a fifth faster, and wrong where rays pass edges or
+  // By floats alone, wide and packet flavours only: about a tenth faster, and wrong where rays pass edges or
   // start on surfaces: hits may be lost, added or far off (host/notes/stability.md says how many).
   kFast,
 };

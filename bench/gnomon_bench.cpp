@@ -66,9 +66,9 @@ void add_options(CLI::App& program, Settings& s) {
       ->check(CLI::IsMember(
           {"primary", "bounce", "bounce-shuffled", "shadow", "sun-axis", "sun-oblique", "random", "none"}))
       ->capture_default_str();
-  program.add_option("--flavours", s.flavours, "of our tracer, by commas")
+  program.add_option("--flavours", s.flavours, "of our tracer, by commas; sorted: packet, rays sorted first")
       ->delimiter(',')
-      ->check(CLI::IsMember({"packet", "wide", "portable", "portable-packet", "thread"}))
+      ->check(CLI::IsMember({"packet", "wide", "portable", "portable-packet", "thread", "sorted"}))
       ->capture_default_str();
   program
       .add_option("--builders", s.builders,
@@ -256,7 +256,9 @@ class SceneBench {
     gnomon::TraceOptions options;
     options.counters = counters;
     options.portable = flavour.starts_with("portable");
-    options.flavour = flavour.ends_with("packet") ? gnomon::TraceFlavour::kPacket : gnomon::TraceFlavour::kWide;
+    options.sort_rays = flavour == "sorted";
+    options.flavour = flavour.ends_with("packet") || options.sort_rays ? gnomon::TraceFlavour::kPacket
+                                                                       : gnomon::TraceFlavour::kWide;
     if (flavour != "thread") return std::make_unique<gnomon::Tracer>(context_, wide_, options);
     options.flavour = gnomon::TraceFlavour::kThread;
     return std::make_unique<gnomon::Tracer>(context_, tree_, options);

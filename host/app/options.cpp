@@ -60,7 +60,10 @@ void add_device_options(CLI::App& command, DeviceOptions& options) {
       ->envname("GNOMON_DEVICE")
       ->type_name("D")
       ->group(group);
-  command.add_flag("--no-cache", options.no_cache, "compile kernels anew, keep none on disk")->group(group);
+  command
+      .add_flag("--no-cache", options.no_cache,
+                "keep no compiled kernels on disk and take none from there; what PoCL keeps, it keeps")
+      ->group(group);
 }
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {

@@ -27,6 +27,8 @@ struct Options {
   std::uint64_t soak_rays = 0;  // 0: the catalogue
   unsigned threads = 0;
   std::string rows;
+  std::string builder;
+  std::string flavour;
   DeviceOptions device;
 };
 
@@ -103,6 +105,8 @@ int run_cases(const Options& options, Console& console) {
   catalogue.only = numbers_of(options.only);
   catalogue.seed = options.seed;
   catalogue.rays = options.rays_per_case;
+  catalogue.builder = options.builder;
+  catalogue.flavour = options.flavour;
   catalogue.scenes = scenes_of(options, console);
   const cl::Context context = open_device(options.device);
   const auto verdicts = stability::run_catalogue(context, catalogue, console.progress());
@@ -124,6 +128,10 @@ Json spread_of_p99(const stability::SoakReport& report) {
 }
 
 int run_soak(const Options& options, Console& console) {
+  if (!options.builder.empty() || !options.flavour.empty()) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "--builder and --flavour are of the catalogue; a long run goes through all of them");
+  }
   stability::SoakOptions soak;
   soak.rays = options.soak_rays;
   soak.seed = options.seed;
@@ -174,6 +182,10 @@ void add_stability_command(CLI::App& program, OutputOptions& output, Action& act
       ->type_name("SCENE");
   command->add_flag("--list", options->list, "name all cases and end");
   command->add_option("--only", options->only, "run these cases, as in 3,17")->type_name("NUMBERS");
+  command->add_option("--builder", options->builder, "through this builder alone, named as in the table")
+      ->type_name("NAME");
+  command->add_option("--flavour", options->flavour, "through this flavour alone, as in \"wide portable\"")
+      ->type_name("NAME");
   add_count(*command, "--rays-per-case", options->rays_per_case, "of one kind on one shape, about")
       ->check(CLI::Range(1, 1000000));
   add_count(*command, "--rays", options->soak_rays,

@@ -27,6 +27,7 @@ struct Options {
   std::string query;  // closest, any or empty: as the kind asks
   std::string flavour = "auto";
   std::string accuracy = "watertight";
+  bool sort = false;
   std::uint64_t repeat = 5;
   std::string rays_in, rays_out, hits_out;
 };
@@ -41,6 +42,7 @@ TraceOptions how_to_trace(const Options& options) {
   TraceOptions how;
   how.flavour = flavour_from(options.flavour);
   how.accuracy = options.accuracy == "fast" ? Accuracy::kFast : Accuracy::kWatertight;
+  how.sort_rays = options.sort;
   return how;
 }
 
@@ -85,6 +87,7 @@ void add_trace(Json& document, const Options& options, const TimedTrace& trace, 
   chosen["repeat"] = options.repeat;
   chosen["flavour"] = options.flavour;
   chosen["accuracy"] = options.accuracy;
+  chosen["sort"] = options.sort;
   document["flavour"] = to_string(trace.flavour);
   document["cost_of_fast"] = trace.cost ? cost_of_fast(*trace.cost) : Json(nullptr);
   document["rays"] = rays;
@@ -118,7 +121,7 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
                          std::to_string(trace.mrays_per_s.count) + ", " + fixed(trace.mrays_per_s.min, 3) +
                          " to " + fixed(trace.mrays_per_s.max, 3) + "; " +
                          (trace.device_clock ? "device time)" : "wall clock, transfers included)"));
-  facts.add("flavour", to_string(trace.flavour));
+  facts.add("flavour", std::string(to_string(trace.flavour)) + (options.sort ? ", rays sorted first" : ""));
   if (trace.cost) {
     facts.add("fast costs",
               std::to_string(trace.cost->lost) + " hits lost, " + std::to_string(trace.cost->added) +
@@ -205,6 +208,9 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
       ->check(CLI::IsMember({"watertight", "fast"}))
       ->type_name("A")
       ->capture_default_str();
+  command->add_flag("--sort", options->sort,
+                    "sort rays by where they start before tracing them, inside the time; hits stay in their "
+                    "order. Pays for rays in no order, such as bounces from all over the picture");
   add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")
       ->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);

@@ -26,11 +26,13 @@ struct Buffer {
 
 struct ContextOptions {
   bool profiling = true;  // event times per stage; adopted queues keep what they have
-  bool use_cache = true;  // keep compiled programs on disk
+  bool use_cache = true;  // keep compiled programs on disk, in a folder of gnomon's own
   // Large buffers of CPU devices leave their memory for later ones: up to so many bytes, and an eighth of the
   // device's memory. 0: none.
   std::size_t spare_bytes = std::size_t{512} << 20U;
-  std::optional<std::filesystem::path> cache_folder;  // default: $XDG_CACHE_HOME/gnomon, else ~/.cache/gnomon
+  // Which. Default: $XDG_CACHE_HOME/gnomon, else ~/.cache/gnomon; none on devices whose driver keeps programs
+  // itself (DeviceInfo::keeps_programs).
+  std::optional<std::filesystem::path> cache_folder;
 };
 
 class LargePages;

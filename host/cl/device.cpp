@@ -107,6 +107,7 @@ DeviceInfo describe_device(cl_device_id device) {
   info.name = text(device, CL_DEVICE_NAME);
   info.vendor = text(device, CL_DEVICE_VENDOR);
   info.platform_name = platform_text(info.platform, CL_PLATFORM_NAME);
+  info.keeps_programs = info.platform_name == "Portable Computing Language";
   info.version = text(device, CL_DEVICE_VERSION);
   info.driver = text(device, CL_DRIVER_VERSION);
   const auto type = number<cl_device_type>(device, CL_DEVICE_TYPE);

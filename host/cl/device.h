@@ -35,6 +35,8 @@ struct DeviceInfo {
   bool fp64 = false;            // double precision: hit decisions are exact
   bool int64_atomics = false;
   bool little_endian = true;
+  // The driver keeps on disk what it compiles, kernel by kernel as they are launched (PoCL).
+  bool keeps_programs = false;
   // Turns all loops of one work-item may make together before the device ends them without a word (65535 on
   // Mesa's llvmpipe); 0: as many as they like. Measured when a Context is made, 0 before.
   std::uint32_t loop_limit = 0;

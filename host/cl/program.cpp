@@ -108,7 +108,14 @@ std::filesystem::path default_cache_folder() {
 
 ProgramStore::ProgramStore(cl_context context, const DeviceInfo& device, const ContextOptions& options)
     : context_(context), device_(device) {
-  if (options.use_cache) cache_folder_ = options.cache_folder.value_or(default_cache_folder());
+  if (!options.use_cache) return;
+  // Asked for a program's binary, PoCL compiles each of its kernels twice, for any work-group size, and then
+  // once more for the size that is launched.
+  if (options.cache_folder) {
+    cache_folder_ = *options.cache_folder;
+  } else if (!device.keeps_programs) {
+    cache_folder_ = default_cache_folder();
+  }
 }
 
 cl_program ProgramStore::get(const std::vector<std::string>& files, const std::string& options) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gnomon/device/trace_device.h"
+#include "gnomon/device/ray_sort.h"
 
 namespace gnomon {
 
@@ -68,11 +68,11 @@ struct Launch {
 [[nodiscard]] double event_ms(const cl::Handle<cl_event>& event);
 
 // Traces rays from host memory in batches; device milliseconds. Fills `answers`, and `counters` when the plan
-// says so.
+// says so. sort: each batch is traced in its order.
 template <typename Answer, typename Counters>
 double trace_in_batches(const cl::Context& context, const TracePlan& plan, std::span<const Ray> rays,
                         std::vector<Answer>& answers, std::vector<Counters>& counters,
-                        const EnqueuePass& enqueue, const Progress& progress) {
+                        const EnqueuePass& enqueue, const Progress& progress, RaySort* sort = nullptr) {
   answers.resize(rays.size());
   if (plan.counters) counters.resize(rays.size());
   const std::size_t batch = plan.batch_of(rays.size());
@@ -88,7 +88,8 @@ double trace_in_batches(const cl::Context& context, const TracePlan& plan, std::
     context.upload_values<Ray>(ray_buffer, rays.subspan(first, count));
     const Launch launch{ray_buffer.mem.get(), answer_buffer.mem.get(), counter_buffer.mem.get(),
                         static_cast<std::uint32_t>(count)};
-    ms += run_passes(context, plan, launch, passes, enqueue);
+    const auto trace = [&](const Launch& l) { return run_passes(context, plan, l, passes, enqueue); };
+    ms += sort != nullptr ? sort->run(launch, sizeof(Answer), plan.counters, trace) : trace(launch);
     context.download(answer_buffer, std::as_writable_bytes(std::span(answers).subspan(first, count)));
     if (plan.counters)
       context.download(counter_buffer, std::as_writable_bytes(std::span(counters).subspan(first, count)));

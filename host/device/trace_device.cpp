@@ -1,5 +1,8 @@
 #include "gnomon/device/trace_device.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "gnomon/cl/launch.h"
 #include "gnomon/cl/program.h"
 #include "gnomon/device/ray_batches.h"
@@ -12,6 +15,27 @@ TraceFlavour flavour_for(const cl::DeviceInfo& device, const TraceOptions& optio
   if (options.flavour != TraceFlavour::kAuto) return options.flavour;
   return device.is_cpu && device.loop_limit == 0 && options.step_limit == 0 ? TraceFlavour::kPacket
                                                                             : TraceFlavour::kThread;
+}
+
+GnBounds box_of(const GnNode& root) {
+  return {{root.lo[0], root.lo[1], root.lo[2]}, 0.0F, {root.hi[0], root.hi[1], root.hi[2]}, 0.0F};
+}
+
+GnBounds box_of(const GnWideNode& root) {
+  GnBounds box{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.lo[k] = *std::min_element(std::begin(root.planes[2 * k]), std::end(root.planes[2 * k]));
+    box.hi[k] = *std::max_element(std::begin(root.planes[2 * k + 1]), std::end(root.planes[2 * k + 1]));
+  }
+  return box;
+}
+
+// For rays to be sorted in; none when they are not.
+template <typename Node>
+std::unique_ptr<RaySort> sort_in(const cl::Context& context, const cl::Buffer& nodes,
+                                 const TraceOptions& options) {
+  if (!options.sort_rays) return nullptr;
+  return std::make_unique<RaySort>(context, box_of(context.download_values<Node>(nodes, 1).front()));
 }
 
 }  // namespace
@@ -70,6 +94,7 @@ void Tracer::trace_binary(const DeviceBvh& tree, const TraceOptions& options) {
   plan_ = std::make_unique<TracePlan>(plan_trace(context_.device(), options, tree.max_depth,
                                                  std::uint64_t{tree.node_count} + tree.triangle_count,
                                                  sizeof(GnWalk)));
+  sort_ = sort_in<GnNode>(context_, tree.nodes, options);
   nodes_ = tree.nodes.mem.get();
   triangles_ = tree.leaf_triangles.mem.get();
   set_up("trace.cl");
@@ -77,6 +102,7 @@ void Tracer::trace_binary(const DeviceBvh& tree, const TraceOptions& options) {
 
 void Tracer::trace_wide(const DeviceWideBvh& tree, const TraceOptions& options) {
   plan_ = std::make_unique<TracePlan>(plan_wide_trace(context_.device(), options, tree.depth));
+  sort_ = sort_in<GnWideNode>(context_, tree.nodes, options);
   nodes_ = tree.nodes.mem.get();
   triangles_ = tree.blocks.mem.get();
   set_up(flavour_ == TraceFlavour::kPacket ? "trace_packet.cl" : "trace_wide.cl");
@@ -115,16 +141,25 @@ cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, const 
   return cl::enqueue(context_.queue(), kernel.get(), global, local, wait_for);
 }
 
+cl::Handle<cl_event> Tracer::enqueue_batch(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
+                                           std::size_t answer_bytes,
+                                           std::span<const cl_event> wait_for) const {
+  if (sort_ == nullptr) return enqueue_passes(context_, *plan_, launch, wait_for, enqueuer(kernel));
+  cl::StageTimes times;
+  const Launch sorted = sort_->begin(launch, answer_bytes, false, wait_for, times);
+  const auto traced = enqueue_passes(context_, *plan_, sorted, {}, enqueuer(kernel));
+  return sort_->end(launch, answer_bytes, false, times);
+}
+
 cl::Handle<cl_event> Tracer::enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
                                              std::span<const cl_event> wait_for) const {
-  return enqueue_passes(context_, *plan_, {rays, hits, no_counters_.mem.get(), count}, wait_for,
-                        enqueuer(closest_));
+  return enqueue_batch(closest_, {rays, hits, no_counters_.mem.get(), count}, sizeof(Hit), wait_for);
 }
 
 cl::Handle<cl_event> Tracer::enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
                                          std::span<const cl_event> wait_for) const {
-  return enqueue_passes(context_, *plan_, {rays, occluded, no_counters_.mem.get(), count}, wait_for,
-                        enqueuer(any_));
+  return enqueue_batch(any_, {rays, occluded, no_counters_.mem.get(), count}, sizeof(std::uint32_t),
+                       wait_for);
 }
 
 template <typename Answer>
@@ -132,8 +167,8 @@ TraceResult Tracer::trace_all(const cl::Handle<cl_kernel>& kernel, std::span<con
                               std::vector<Answer> TraceResult::*answers, const Progress& progress) const {
   TraceResult result;
   const std::uint64_t invalid_before = invalid_rays();
-  result.kernel_ms =
-      trace_in_batches(context_, *plan_, rays, result.*answers, result.counters, enqueuer(kernel), progress);
+  result.kernel_ms = trace_in_batches(context_, *plan_, rays, result.*answers, result.counters,
+                                      enqueuer(kernel), progress, sort_.get());
   result.invalid_rays = invalid_rays() - invalid_before;
   return result;
 }

@@ -44,6 +44,9 @@ struct TraceOptions {
   // Also count boxes and triangles per ray; slower. Rays of a packet count what their sixteen were tested
   // against, the first also what was tested for all at once.
   bool counters = false;
+  // Trace each batch in the order of its rays' origins along a curve through the scene: pays where rays that
+  // follow each other start far apart. Answers stay in the caller's order, and are the same bits.
+  bool sort_rays = false;
   std::uint32_t work_group_size = 64;  // power of two up to the device's limit
   // A ray's nodes and triangles per launch; rays that need more go on in another launch. 0: all in one,
   // unless the device ends long loops (DeviceInfo::loop_limit). For devices that stop kernels which run for
@@ -66,6 +69,7 @@ struct Passes;
 using EnqueuePass = std::function<cl::Handle<cl_event>(const Launch&, const Passes&, std::uint32_t pass,
                                                        std::span<const cl_event> wait_for)>;
 struct TracePlan;
+class RaySort;
 
 // Holds the kernels for one tree. The context and the tree must outlive it.
 class Tracer {
@@ -103,6 +107,9 @@ class Tracer {
                                              const Passes& passes, std::uint32_t pass,
                                              std::span<const cl_event> wait_for) const;
   [[nodiscard]] EnqueuePass enqueuer(const cl::Handle<cl_kernel>& kernel) const;
+  [[nodiscard]] cl::Handle<cl_event> enqueue_batch(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
+                                                   std::size_t answer_bytes,
+                                                   std::span<const cl_event> wait_for) const;
   template <typename Answer>
   [[nodiscard]] TraceResult trace_all(const cl::Handle<cl_kernel>& kernel, std::span<const Ray> rays,
                                       std::vector<Answer> TraceResult::*answers,
@@ -114,6 +121,7 @@ class Tracer {
   cl_mem nodes_ = nullptr;
   cl_mem triangles_ = nullptr;
   std::unique_ptr<TracePlan> plan_;
+  std::unique_ptr<RaySort> sort_;  // when rays are to be sorted
   cl::Handle<cl_kernel> closest_;
   cl::Handle<cl_kernel> any_;
   cl::Buffer invalid_;

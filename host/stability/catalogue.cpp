@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "gnomon/stability/cases.h"
 #include "gnomon/stability/flavours.h"
@@ -24,12 +25,30 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
+// Keeps the one of that name; of none, all.
+template <typename Way>
+std::vector<Way> chosen(std::vector<Way> ways, const std::string& name, const std::string& what) {
+  if (name.empty()) return ways;
+  std::string names;
+  for (const Way& way : ways) {
+    if (way.name == name) return {way};
+    names += (names.empty() ? "" : ", ") + way.name;
+  }
+  throw Error(ErrorCode::kInvalidArgument,
+              "stability: there is no " + what + " \"" + name + "\" on this device; there are " + names);
+}
+
 Bench bench_of(const cl::Context& context, const CatalogueOptions& options, const Progress& progress) {
   if (options.rays < 1 || options.rays > 1000000) {
     throw Error(ErrorCode::kInvalidArgument, "stability: rays must be 1 to 1000000");
   }
-  return {context,        builders(), flavours_of(context.device()), options.seed, options.rays,
-          options.scenes, progress};
+  return {context,
+          chosen(builders(), options.builder, "builder"),
+          chosen(flavours_of(context.device()), options.flavour, "flavour"),
+          options.seed,
+          options.rays,
+          options.scenes,
+          progress};
 }
 
 std::vector<Verdict> run_specimens(const Bench& bench, const Case& one) {

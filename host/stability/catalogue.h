@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "gnomon/cl/context.h"
@@ -17,12 +18,15 @@ struct CatalogueOptions {
   std::uint64_t seed = 1;
   std::uint32_t rays = 256;   // of one kind on one shape, about; 1..1e6
   std::vector<Scene> scenes;  // what case 18 runs on instead of a generated one
+  std::string builder;        // through this one alone, by its name in verdicts; empty: through all
+  std::string flavour;        // likewise
 };
 
 // All cases, by number.
 [[nodiscard]] std::vector<CaseInfo> catalogue();
 
-// Throws Error: kInvalidArgument (a number there is no case of; rays), and as builders and tracers do.
+// Throws Error: kInvalidArgument (a number there is no case of; rays; a builder or flavour that the device
+// does not have), and as builders and tracers do.
 [[nodiscard]] std::vector<Verdict> run_catalogue(const cl::Context& context, const CatalogueOptions& options,
                                                  const Progress& progress = {});
 

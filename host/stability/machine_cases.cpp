@@ -98,7 +98,9 @@ std::vector<Verdict> little_memory(const Bench& bench, const CaseInfo& info) {
              device, static_cast<std::uint32_t>(expected.specimen.triangles.size()), builder.options))
       largest = std::max(largest, need.bytes);
     device.max_allocation = largest;
-    check_machine(cl::Context(device), expected, builder, expected.hashes[b], bench.flavours[0].options, true,
+    TraceOptions thread;  // the other flavours need buffers of their own
+    thread.flavour = TraceFlavour::kThread;
+    check_machine(cl::Context(device), expected, builder, expected.hashes[b], thread, true,
                   "where the largest buffer just fits", verdict);
     device.max_allocation = largest - 1;
     try {

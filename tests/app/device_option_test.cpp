@@ -59,11 +59,21 @@ TEST_CASE("what does not fit exits 5 and names the buffer") {
   CHECK_THAT(host.err, Contains("out of memory"));
 }
 
-TEST_CASE("--no-cache leaves no compiled program behind, its absence does") {
+TEST_CASE(
+    "--no-cache leaves no compiled program behind, its absence does where the driver keeps none itself") {
   const Folder folder;
-  program::Setup fresh{{{"XDG_CACHE_HOME", folder.path().string()}}, false, {}, {}};
-  REQUIRE(run({"build", "gen:random:100", "--no-cache"}, fresh).status == 0);
-  CHECK_FALSE(std::filesystem::exists(folder.path() / "gnomon"));
-  REQUIRE(run({"build", "gen:random:100"}, fresh).status == 0);
-  CHECK_FALSE(std::filesystem::is_empty(folder.path() / "gnomon"));
+  program::Setup fresh{
+      {{"XDG_CACHE_HOME", folder.path().string()}, {"RUSTICL_ENABLE", "llvmpipe"}}, false, {}, {}};
+  const auto kept = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"build", "gen:random:100"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto outcome = run(arguments, fresh);
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const auto programs = folder.path() / "gnomon";
+    return std::filesystem::exists(programs) && !std::filesystem::is_empty(programs);
+  };
+  CHECK_FALSE(kept({"--device", "Portable"}));  // PoCL keeps its own
+  CHECK_FALSE(kept({"--device", "rusticl", "--no-cache"}));
+  CHECK(kept({"--device", "rusticl"}));
 }

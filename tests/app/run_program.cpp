@@ -72,6 +72,7 @@ std::vector<std::string> environment_of(const Setup& setup) {
   }
   values["XDG_CACHE_HOME"] = GNOMON_TEST_CACHE;
   values["POCL_CACHE_DIR"] = std::string(GNOMON_TEST_CACHE) + "/pocl";
+  values["MESA_SHADER_CACHE_DIR"] = std::string(GNOMON_TEST_CACHE) + "/mesa";
   values["TERM"] = "xterm";
   values.erase("NO_COLOR");
   values.erase("GNOMON_KERNELS");

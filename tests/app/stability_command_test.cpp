@@ -58,6 +58,22 @@ TEST_CASE("chosen cases run for every flavour and give one row each") {
   CHECK_THAT(text.out, Contains("at shared corners") && Contains("thread") && Contains("\nok"));
 }
 
+TEST_CASE("one builder and one flavour can be chosen, and only such as there are") {
+  const auto outcome = run({"stability", "--only", "1", "--rays-per-case", "16", "--builder", "fast",
+                            "--flavour", "thread", "--json"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const json rows = json::parse(outcome.out).at("rows");
+  REQUIRE(rows.size() == 1);
+  CHECK(rows.at(0).at("builder") == "fast");
+  CHECK(rows.at(0).at("flavour") == "thread");
+  const auto refused = run({"stability", "--only", "1", "--flavour", "wider"});
+  CHECK(refused.status == 2);
+  CHECK_THAT(refused.err, Contains("no flavour \"wider\"") && Contains("thread"));
+  CHECK_THAT(run({"stability", "--only", "1", "--builder", "slow"}).err, Contains("balanced, fast"));
+  CHECK(run({"stability", "--rays", "100", "--builder", "fast"}).status == 2);
+}
+
 TEST_CASE("the same seed gives the same rows, another seed others") {
   const auto rows = [](const char* seed) {
     return json::parse(

@@ -1,4 +1,5 @@
-// Faults planted in the kernels, one at a time: each is caught by the case named.
+// Faults planted in the kernels, one at a time: each is caught by the case named, through the flavour that
+// has the fault.
 #include <catch2/catch.hpp>
 
 #include "broken_kernels.h"
@@ -12,6 +13,7 @@ namespace {
 struct Plant {
   const char* what;
   const char* cases;
+  const char* flavour;
   std::vector<Edit> edits;
 };
 
@@ -22,52 +24,71 @@ const char* const kWide = "wide_walk.h";
 
 const std::vector<Plant>& plants() {
   static const std::vector<Plant> all{
-      {"a box test that loses to NaN", "7", {{kRay, "near = gn_max(a, near);", "near = gn_max(near, a);"}}},
+      {"a box test that loses to NaN",
+       "7",
+       "thread",
+       {{kRay, "near = gn_max(a, near);", "near = gn_max(near, a);"}}},
       {"a wide box test that loses to NaN",
        "7",
+       "wide",
        {{kWide, "far = GN_MIN8(far_y, far);", "far = GN_MIN8(far, far_y);"},
         {kWide, "near = GN_MAX8(near_y, near);", "near = GN_MAX8(near, near_y);"}}},
       {"an edge test that trusts floats",
        "22",
+       "thread",
        {{kHit, "#define GN_EDGE_ERROR_8 2.9802322e-07f", "#define GN_EDGE_ERROR_8 0.0f"},
         {kHit, "#define GN_EDGE_UNDERFLOW 1e-36f", "#define GN_EDGE_UNDERFLOW 0.0f"}}},
       {"an edge test that trusts doubles",
        "22",
+       "thread",
        {{kHit, "return gn_exact_edge_sign(ray->direction, ray->origin, a, b);",
          "return gn_wide_sign(value);"}}},
       {"sums of products that are contracted",
        "22,24",
+       "thread",
        {{"shared/scalar.h", "#pragma OPENCL FP_CONTRACT OFF", "#pragma OPENCL FP_CONTRACT ON"},
         {"shared/exact_math.h", "    size = gn_grow_expansion(e, size, d * low);\n", ""}}},
-      {"a distance that trusts doubles", "25", {{kHit, "return doubtful ||", "return doubtful &&"}}},
+      {"a distance that trusts doubles",
+       "25",
+       "thread",
+       {{kHit, "return doubtful ||", "return doubtful &&"}}},
       {"boxes without slack",
        "22",
+       "thread",
        {{kRay, "#define GN_SLAB_SLACK 1.9073486e-06f", "#define GN_SLAB_SLACK 0.0f"}}},
       {"boxes behind a negative tmin without their margin",
        "22,24,30",
+       "wide",
        {{kLeaf, "ray->tmin < 0.0f ? -4.0f * GN_SLAB_SLACK * ray->tmin : 0.0f", "0.0f"}}},
       {"an end of the range that does not count",
        "12",
+       "thread",
        {{"walk.h", "hit.t <= ray->tmax", "hit.t < ray->tmax"}}},
       {"a start of the range that does not count",
        "12",
+       "wide",
        {{kLeaf, "hit.t >= ray->tmin && ", "hit.t > ray->tmin && "}}},
       {"the last of equally near triangles",
        "27",
+       "thread",
        {{kHit, "hit->primitive < best->primitive", "hit->primitive > best->primitive"}}},
       {"directions whose reciprocals overflow",
        "14",
+       "thread",
        {{kRay, "longest >= GN_SHORTEST_DIRECTION", "longest > 0.0f"}}},
       {"reciprocals of denormal components",
        "16",
+       "thread",
        {{kRay, "magnitude != 0u && magnitude < 0x00800000u", "0"}}},
       {"distances that overflow",
        "32",
+       "wide",
        {{kLeaf, "const int known = farthest - nearest < INFINITY;", "const int known = 1;"},
         {kLeaf, "(u * share * az + v * share * bz + w * share * cz)",
          "((u * az + v * bz + w * cz) * share)"}}},
       {"a stack of eight nodes, what is above lost",
        "30",
+       "thread",
        {{"walk.h", "if (far_entry < INFINITY) {", "if (far_entry < INFINITY && height < 8u) {"}}},
       {"a stack of 32 nodes where 33 wait",
        "30",
@@ -77,15 +98,19 @@ const std::vector<Plant>& plants() {
        {{"group.h", "k < 6u; k += GN_WGS) keys[k]", "k < 6u; k += 64u) keys[k]"}}},
       {"a wide stack of six nodes, what is above lost",
        "28,30",
+       "wide",
        {{kWide, "height += count - 1u;", "height = min(height + count - 1u, 6u);"}}},
       {"a wide node's last child forgotten",
        "17",
+       "wide",
        {{kWide, "height += count - 1u;", "height += count - 2u;"}}},
       {"an area's exit that is too far",
        "49",
+       "thread",
        {{"shared/area_math.h", "#define GN_AREA_SHORTER 9.9999905e-01f", "#define GN_AREA_SHORTER 1.001f"}}},
       {"a measure that is a last bit off",
        "41",
+       "thread",
        {{"shared/elementary_math.h", "return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];",
          "return a[2] * b[2] + a[1] * b[1] + a[0] * b[0];"}}},
   };
@@ -97,9 +122,10 @@ const std::vector<Plant>& plants() {
 TEST_CASE("every planted fault is caught") {
   for (const Plant& plant : plants()) {
     const BrokenKernels broken(plant.edits);
-    const auto outcome =
-        run({"stability", "--only", plant.cases, "--rays-per-case", "256", "-q"}, broken.setup());
-    CAPTURE(plant.what, plant.cases, outcome.out, outcome.err);
+    const auto outcome = run({"stability", "--only", plant.cases, "--rays-per-case", "256", "--builder",
+                              "balanced", "--flavour", plant.flavour, "-q"},
+                             broken.setup());
+    CAPTURE(plant.what, plant.cases, plant.flavour, outcome.out, outcome.err);
     // 1000 and more: a signal, which a stack that is too small may end in.
     CHECK((outcome.status == 6 || outcome.status > 1000));
   }

@@ -105,7 +105,8 @@ WrongHits wrong_hits_of(const Scene& scene, double size) {
 
 TEST_CASE(
     "the published rule gives wrong hits where regions are cut, and by vertices anywhere; the exit rule "
-    "none") {
+    "none",
+    "[large]") {
   for (const auto& [name, count] : {std::pair{"random1000", 1000}, {"cottage", 7000}}) {
     const Scene scene = generate_scene(name, static_cast<std::uint64_t>(count), 1);
     const WrongHits spanning = wrong_hits_of(scene, 1.0);

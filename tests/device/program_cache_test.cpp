@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "gnomon/cl/program.h"
 #include "support/device.h"
@@ -32,14 +33,15 @@ class TemporaryFolder {
 // Every context compiles loop_limit.cl for itself, and use() one more.
 constexpr std::uint32_t kPrograms = 2;
 
-// Compiles probe.cl in a fresh context and says what the store did.
+// Compiles a small program in a fresh context and says what the store did.
 cl::ProgramStoreStats use(const fs::path& folder, bool cache = true) {
   cl::ContextOptions options;
   options.use_cache = cache;
   options.cache_folder = folder;
   const cl::Context context(gnomon::test::chosen_device(), options);
-  static_cast<void>(context.programs().get({"probe.cl"}, "-DGN_CACHE_TEST=1"));
-  static_cast<void>(context.programs().get({"probe.cl"}, "-DGN_CACHE_TEST=1"));  // the second is in memory
+  static_cast<void>(context.programs().get({"loop_limit.cl"}, "-DGN_CACHE_TEST=1"));
+  static_cast<void>(
+      context.programs().get({"loop_limit.cl"}, "-DGN_CACHE_TEST=1"));  // the second is in memory
   return context.programs().stats();
 }
 
@@ -52,11 +54,15 @@ std::vector<fs::path> entries(const fs::path& folder) {
 // Sets an environment variable for one scope.
 class Environment {
  public:
-  Environment(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
-  ~Environment() { unsetenv(name_); }
+  Environment(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    setenv(name, value.c_str(), 1);
+  }
+  ~Environment() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
 
  private:
   const char* name_;
+  std::optional<std::string> before_;
 };
 
 }  // namespace
@@ -103,6 +109,14 @@ TEST_CASE("truncated, altered, foreign and empty entries are rebuilt silently") 
 
 TEST_CASE("a cache folder that cannot be written is no error") {
   REQUIRE(use("/proc/gnomon-cannot-write-here").compiled == kPrograms);
+}
+
+TEST_CASE("the folder that nobody named is used where the driver keeps nothing itself") {
+  const TemporaryFolder folder;
+  const Environment xdg("XDG_CACHE_HOME", folder.path().string());
+  const cl::DeviceInfo device = gnomon::test::chosen_device();
+  const cl::Context context(device);
+  REQUIRE(fs::exists(folder.path() / "gnomon") == !device.keeps_programs);
 }
 
 TEST_CASE("the cache lives under XDG_CACHE_HOME, else under HOME") {

@@ -29,7 +29,10 @@ Tally require_each_alone(const std::vector<GnTriangle>& triangles, const std::ve
 
 }  // namespace
 
-TEST_CASE("generated scenes: areas of every kind that span them, shrunk or cut, change no answer") {
+// [large]: many scenes and rays for kernels that smaller tests compile and run too; Mesa's device is spared
+// it.
+TEST_CASE("generated scenes: areas of every kind that span them, shrunk or cut, change no answer",
+          "[large]") {
   Tally sum;
   for (const auto& [name, count] : {std::pair{"random100", 100}, {"random1000", 1000}, {"cottage", 7000}}) {
     const Scene scene = generate_scene(name, static_cast<std::uint64_t>(count), 1);

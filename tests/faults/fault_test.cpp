@@ -2,7 +2,9 @@
 // or the right answer where the call could be done without; nothing leaks, and the next run is as good as
 // new.
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <set>
@@ -136,6 +138,23 @@ TEST_CASE("devices, a context of one's own and its first kernel") {
     CAPTURE(call);
     REQUIRE(outcomes.errors.contains(call));
   }
+}
+
+TEST_CASE("a program taken from a cache") {
+  std::string folder = (std::filesystem::temp_directory_path() / "gnomon-test-XXXXXX").string();
+  REQUIRE(mkdtemp(folder.data()) != nullptr);
+  cl::ContextOptions options;
+  options.cache_folder = folder;
+  const Outcomes outcomes = fail_each(
+      [&] {
+        const cl::Context context(shared().context(), shared().device().device, shared().queue(), options);
+        return context.device().name;
+      },
+      20);
+  std::filesystem::remove_all(folder);
+  // What cannot be loaded is compiled; what cannot be compiled is an error, cached or not.
+  REQUIRE(outcomes.unharmed.contains("clCreateProgramWithBinary"));
+  REQUIRE(outcomes.unharmed.contains("clBuildProgram"));
 }
 
 TEST_CASE("a context that is the caller's is given back as it was") {

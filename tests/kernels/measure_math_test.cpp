@@ -192,6 +192,47 @@ TEST_CASE("a few steps are at least ten times as near as one, and are taken only
   }
 }
 
+// cos(pitch) is small there, and yaw and pitch grow by one over it.
+TEST_CASE("boxes next to the pole measure what the reference says, in yaw and pitch") {
+  gnomon::PointView view;
+  view.eye = {0.5, -0.25, 0.125};
+  view.direction = {0, 0, 1};
+  view.fov_x = 175 * kPi / 180;
+  view.fov_y = 175 * kPi / 180;
+  view.near_distance = 0.125;
+  view.far_distance = 100;
+  const InfluenceArea area = InfluenceArea::point(view);
+  const GnMeasure m = gnomon::measure_of(area, RayMeasure::kYawPitch, true);
+  Random random(108);
+  int one = 0;
+  int few = 0;
+  for (int i = 0; i < 400; ++i) {
+    // 85 to 86 degrees up or down, the box's size against its distance from the up axis as one step and few
+    // allow.
+    const double pitch = static_cast<double>(random.between(85.0F, 86.0F)) * kPi / 180;
+    const double level = 10.0 / std::tan(pitch);
+    const double yaw = static_cast<double>(random.between(-0.8F, 0.8F));
+    const double up = i % 2 == 0 ? 10.0 : -10.0;
+    const float half_size = static_cast<float>(level) * random.between(0.005F, 0.1F);
+    const float centre[3] = {static_cast<float>(view.eye[0] + level * std::sin(yaw)),
+                             static_cast<float>(view.eye[1] + up),
+                             static_cast<float>(view.eye[2] + level * std::cos(yaw))};
+    Box box{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.lo[k] = centre[k] - half_size;
+      box.hi[k] = centre[k] + half_size;
+    }
+    const int how = gn_measure_how(&m, box.lo, box.hi);
+    if (how != GN_SEEN_ONE_STEP && how != GN_SEEN_FEW_STEPS) continue;
+    (how == GN_SEEN_ONE_STEP ? one : few) += 1;
+    CAPTURE(i, how, pitch, yaw, half_size);
+    const double exact = gnomon::culled_measure(area, box.exact(), RayMeasure::kYawPitch);
+    REQUIRE(gn_box_measure(&m, how, box.lo, box.hi) == Approx(exact).epsilon(0.015));
+  }
+  REQUIRE(one > 30);
+  REQUIRE(few > 30);
+}
+
 TEST_CASE("unculled measures are the reference's") {
   Random random(104);
   for (const Case& c : cases()) {

@@ -51,7 +51,8 @@ static inline GnBoxPair group_union(GnBoxPair box, volatile __local int* keys) {
 #if GN_WGS == 1
   return box;
 #else
-  if (GN_LOCAL_ID < 6u) keys[GN_LOCAL_ID] = ordered_of(GN_LOCAL_ID < 3u ? INFINITY : -INFINITY);
+  uint k;  // groups may have fewer than six items
+  for (k = GN_LOCAL_ID; k < 6u; k += GN_WGS) keys[k] = ordered_of(k < 3u ? INFINITY : -INFINITY);
   GN_GROUP_BARRIER();
   atomic_min(keys + 0, ordered_of(box.lo.x));
   atomic_min(keys + 1, ordered_of(box.lo.y));

@@ -89,7 +89,7 @@ static inline uint packet_edges(const GnPacket* p, __global const GnTriangleBloc
   const float8 length = GN_MAX8(GN_MAX8(lx, ly), lz) + GN_PACKET_UNDERFLOW;
   const float8 far = GN_MAX8(GN_LARGEST_OF_3(ax, bx, cx), GN_LARGEST_OF_3(ay, by, cy)) +
                      p->most_shear * GN_LARGEST_OF_3(az, bz, cz) + p->extra;
-  const float8 bound = GN_PACKET_ERROR * length * far + GN_EDGE_UNDERFLOW;
+  const float8 bound = GN_FAST ? (float8)0.0f : GN_PACKET_ERROR * length * far + GN_EDGE_UNDERFLOW;
   const float8 za = p->parallel ? one : az, zb = p->parallel ? one : bz, zc = p->parallel ? one : cz;
   const float8 uw = p->parallel ? zero : uz, vw = p->parallel ? zero : vz, ww = p->parallel ? zero : wz;
   GN_STORE_EDGE(out->u, ux - p->shear_x * uz, uy - p->shear_y * uz, uw, bx, by, zb, u, ru)
@@ -103,11 +103,13 @@ static inline uint packet_edges(const GnPacket* p, __global const GnTriangleBloc
     vstore8(nx * rx + ny * ry + nz * az, 0, out->from);
     vstore8(nx * p->shear_x + ny * p->shear_y + nz, 0, out->through);
     vstore8(bound, 0, out->bound);
+#if !GN_FAST
     vstore8(GN_PLANE_ERROR * (mx * (fabs(rx) + p->extra) + my * (fabs(ry) + p->extra) + mz * fabs(az)) +
                 GN_EDGE_UNDERFLOW * (fabs(rx) + fabs(ry) + fabs(az) + 1.0f),
             0, out->from_error);
     vstore8(GN_PLANE_ERROR * (mx * p->most_shear_x + my * p->most_shear_y + mz) + GN_EDGE_UNDERFLOW, 0,
             out->through_error);
+#endif
   }
   // Missed by all: two edges have certain and different signs, or the facing is certain and one edge's sign is not its.
   {
@@ -144,11 +146,15 @@ static inline void test_triangle(GnPacket* p, __global const float8* rays, __glo
     const float16 through = p->parallel ? (float16)e->through[i] : e->through[i] + lean;
     const float16 share = 1.0f / through;
     const float16 distance = from * share;
+#if GN_FAST
+    const float16 error = (float16)0.0f;
+#else
     // Beyond twice its error, through is wrong by less than half.
     const float16 scale =
         fabs(through) > 2.0f * e->through_error[i] ? fabs(2.0f * inverse * share) : (float16)INFINITY;
     const float16 error = (e->from_error[i] + e->through_error[i] * fabs(distance)) * scale +
                           GN_SLAB_SLACK * (fabs(distance) + fabs(start)) * fabs(inverse) + GN_MET_UNDERFLOW;
+#endif
     const float16 t = (distance - start) * inverse;
     const float16 nearest = t - error, farthest = t + error;
     const uint beyond = lanes_above16(p->tmin[g], farthest) | lanes_above16(nearest, p->tmax[g]) |
@@ -163,6 +169,13 @@ static inline void test_triangle(GnPacket* p, __global const float8* rays, __glo
       p->nearest[g] = lanes ? nearest : p->nearest[g];
       p->farthest[g] = lanes ? farthest : p->farthest[g];
       p->place[g] = lanes ? (uint16)place : p->place[g];
+#if GN_FAST
+      {
+        const float16 whole = 1.0f / (u + v + w);
+        p->hit_u[g] = lanes ? v * whole : p->hit_u[g];
+        p->hit_v[g] = lanes ? w * whole : p->hit_v[g];
+      }
+#endif
       p->found[g] |= take;
       p->pending[g] |= take;
     }

@@ -25,6 +25,10 @@ typedef struct GnPacket {
   float16 slide_y[GN_GROUPS];
   float16 start[GN_GROUPS];  // from the apex to the origin along the main axis
   uint16 place[GN_GROUPS];   // of the triangle that floats found: block * 8 + lane
+#if GN_FAST
+  float16 hit_u[GN_GROUPS];  // where in it
+  float16 hit_v[GN_GROUPS];
+#endif
   uint active[GN_GROUPS];    // a bit for each ray still traced
   uint found[GN_GROUPS];
   uint pending[GN_GROUPS];  // found by floats, exact values not known

@@ -13,7 +13,7 @@ typedef struct GnFound {
   uint count;
 } GnFound;
 
-#if GN_HAS_FP64
+#if GN_HAS_FP64 && !GN_FAST
 
 // Of three vectors that of axis k, lane by lane.
 static inline double8 of_axis(long8 is_y, long8 is_z, double8 x, double8 y, double8 z) {
@@ -52,7 +52,7 @@ static inline GnHit settle_one(const GnFound* found, uint i, __global const GnTr
   return hit;
 }
 
-#if GN_HAS_FP64
+#if GN_HAS_FP64 && !GN_FAST
 
 // Works out the hits in `found` and writes them.
 static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangleBlock* blocks,

@@ -15,7 +15,13 @@ static inline void write_packet(GnPacket* p, GnFound* found, __global const GnTr
   for (i = 0u; i < 16u * p->groups; ++i) {
     const uint g = i >> 4, bit = 1u << (i & 15u), index = p->first + i;
     if (p->pending[g] & bit) {
-      hand_in(found, index, ((const uint*)p->place)[i], blocks, rays, hits);
+      const uint place = ((const uint*)p->place)[i];
+#if GN_FAST
+      hits[index] = (float4)(((const float*)p->nearest)[i], ((const float*)p->hit_u)[i], ((const float*)p->hit_v)[i],
+                             as_float(blocks[place >> 3].primitives[place & 7u]));
+#else
+      hand_in(found, index, place, blocks, rays, hits);
+#endif
     } else if (p->found[g] & bit) {
       hits[index] = (float4)(p->best[i].t, p->best[i].u, p->best[i].v, as_float(p->best[i].primitive));
     } else {

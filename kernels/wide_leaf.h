@@ -1,7 +1,8 @@
 // One ray of the wide flavours against leaves, eight triangles a step, and what a walk remembers. A hit that floats found
 // is an interval; only where intervals overlap, or floats cannot tell inside from outside, is a triangle worked out
 // exactly.
-// Options: GN_COUNTERS, GN_PORTABLE (eight.h). Feeds wide_walk.h and packet_leaf.h.
+// Options: GN_COUNTERS, GN_PORTABLE (eight.h), GN_FAST (1: floats decide and measure, without error bounds; hits may be
+// lost). Feeds wide_walk.h and packet_leaf.h.
 #ifndef GNOMON_WIDE_LEAF_H
 #define GNOMON_WIDE_LEAF_H
 
@@ -13,6 +14,9 @@
 // Keeps rare work from taking registers from the loop around it.
 #define GN_OUT_OF_LINE __attribute__((noinline))
 
+#ifndef GN_FAST
+#define GN_FAST 0
+#endif
 #ifndef GN_COUNTERS
 #define GN_COUNTERS 0
 #endif
@@ -85,7 +89,11 @@ static GN_OUT_OF_LINE int resolve(const GnRayFrame* frame, __global const GnTria
     v2[k] = block->corners[6u + k][lane];
   }
   hit->primitive = block->primitives[lane];
+#if GN_FAST
+  return gn_triangle_by_floats(frame, v0, v1, v2, hit);
+#else
   return gn_triangle_resolve(frame, v0, v1, v2, verdict, hit);
+#endif
 }
 
 // The exact values of a hit that floats found.
@@ -148,7 +156,7 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
   const float8 px = GN_MAX8(GN_MAX8(fabs(ax), fabs(bx)), fabs(cx));
   const float8 py = GN_MAX8(GN_MAX8(fabs(ay), fabs(by)), fabs(cy));
   const float8 q = GN_MAX8(px, py) + GN_EDGE_SHIFT * z;
-  const float8 bound = GN_EDGE_ERROR_8 * (8.0f * q * (q + z)) + GN_EDGE_UNDERFLOW;
+  const float8 bound = GN_FAST ? (float8)0.0f : GN_EDGE_ERROR_8 * (8.0f * q * (q + z)) + GN_EDGE_UNDERFLOW;
   const float8 largest = GN_MAX8(GN_MAX8(u, v), w), smallest = GN_MIN8(GN_MIN8(u, v), w);
   uint met = ~(lanes_above(largest, bound) & lanes_above(-bound, smallest)) & (255u >> (8u - count));
   if (met != 0u) {
@@ -156,9 +164,11 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
     const float8 share = 1.0f / (u + v + w);
     const float8 spread = GN_MAX8(GN_MAX8(az, bz), cz) - GN_MIN8(GN_MIN8(az, bz), cz);
     const float8 inverse = (float8)frame->inverse[kz];
-    const float8 error = ((4.0f * bound * spread + GN_MET_UNDERFLOW) * fabs(share) + GN_SLAB_SLACK * z + GN_MET_UNDERFLOW) *
-                             fabs(inverse) +
-                         GN_MET_UNDERFLOW;
+    const float8 error = GN_FAST ? (float8)0.0f
+                                 : ((4.0f * bound * spread + GN_MET_UNDERFLOW) * fabs(share) + GN_SLAB_SLACK * z +
+                                    GN_MET_UNDERFLOW) *
+                                           fabs(inverse) +
+                                       GN_MET_UNDERFLOW;
     const float8 t = (u * share * az + v * share * bz + w * share * cz) * inverse;
     float nearest[8], farthest[8];
     vstore8(t - error, 0, nearest);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "numbers.h"
+#include "oracle_rows.h"
 
 namespace gnomon::app {
 
@@ -12,37 +13,6 @@ using stability::SoakPart;
 using stability::Verdict;
 
 namespace {
-
-// JSON has no infinity: a quantile beyond the last step is given as null.
-Json finite(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-void add_counts(Json& row, const OracleReport& o) {
-  row["rays"] = o.rays_judged;
-  row["hits"] = o.hits;
-  row["lost"] = o.lost;
-  row["false_hits"] = o.false_hits;
-  row["wrong_primitive"] = o.wrong_primitive;
-  row["any_closest_disagree"] = o.any_closest_disagree;
-  row["ties"] = o.ties;
-  row["range_ambiguous"] = o.range_ambiguous;
-  row["t_error_ulp"] = {{"p50", finite(o.t_errors.quantile(0.5))},
-                        {"p99", finite(o.t_errors.quantile(0.99))},
-                        {"max", finite(o.max_t_error_ulp)}};
-  row["max_uv_error"] = finite(o.max_uv_error);
-}
-
-// The steps that are not empty, as [upper end in ulp, hits].
-Json distribution(const ErrorCounts& errors) {
-  Json steps = Json::array();
-  for (std::size_t i = 0; i < errors.steps.size(); ++i) {
-    if (errors.steps[i] == 0) continue;
-    const double end = static_cast<double>(i + 1) / static_cast<double>(ErrorCounts::kPerUlp);
-    steps.push_back(Json::array({i + 1 == errors.steps.size() ? Json(nullptr) : Json(end), errors.steps[i]}));
-  }
-  return steps;
-}
 
 std::string ulp_text(double ulp) {
   return std::isfinite(ulp) ? fixed(ulp, 2) : "> 8";
@@ -60,9 +30,9 @@ Json to_json(const Verdict& verdict) {
   row["builder"] = verdict.builder;
   row["flavour"] = verdict.flavour;
   row["triangles"] = verdict.triangles;
-  add_counts(row, verdict.oracle);
+  add_oracle(row, verdict.oracle);
   row["invalid_rays"] = verdict.invalid_rays;
-  row["tolerance_ulp"] = verdict.most_ulp;
+  row["tolerance_ulp"] = verdict.exact ? Json(verdict.most_ulp) : Json(nullptr);  // else each hit has its own
   row["other_faults"] = verdict.other_faults;
   row["first_fault"] = verdict.first_fault;
   row["ok"] = verdict.ok();
@@ -75,13 +45,12 @@ Json to_json(const SoakPart& part, bool exact) {
            {"builder", part.builder},
            {"triangles", part.triangles},
            {"offset", part.offset}};
-  add_counts(row, part.oracle);
+  add_oracle(row, part.oracle);
   row["at_corners"] = part.at_corners;
   row["at_edges"] = part.at_edges;
   row["exactly"] = part.exactly;
   row["invalid_rays"] = part.invalid;
   row["flavours_differ"] = part.flavours_differ;
-  row["t_error_steps"] = distribution(part.oracle.t_errors);
   row["bad_rays"] = Json(part.oracle.bad_rays);
   row["ok"] = part.faults(exact) == 0;
   return row;

@@ -26,6 +26,7 @@ struct Options {
   std::uint64_t seed = 1;
   std::string query;  // closest, any or empty: as the kind asks
   std::string flavour = "auto";
+  std::string accuracy = "watertight";
   bool sort = false;
   std::uint64_t repeat = 5;
   std::string rays_in, rays_out, hits_out;
@@ -35,6 +36,21 @@ TraceFlavour flavour_from(const std::string& name) {
   for (const TraceFlavour flavour : {TraceFlavour::kThread, TraceFlavour::kWide, TraceFlavour::kPacket})
     if (name == to_string(flavour)) return flavour;
   return TraceFlavour::kAuto;
+}
+
+TraceOptions how_to_trace(const Options& options) {
+  TraceOptions how;
+  how.flavour = flavour_from(options.flavour);
+  how.accuracy = options.accuracy == "fast" ? Accuracy::kFast : Accuracy::kWatertight;
+  how.sort_rays = options.sort;
+  return how;
+}
+
+Json cost_of_fast(const HitDifference& cost) {
+  return {{"lost", cost.lost},
+          {"added", cost.added},
+          {"other_triangle", cost.other_triangle},
+          {"max_t_ulp", cost.max_t_ulp}};
 }
 
 // Whether to ask for any hit only. Files hold closest hits, so writing one asks for those.
@@ -70,8 +86,10 @@ void add_trace(Json& document, const Options& options, const TimedTrace& trace, 
   chosen["query"] = any_hit ? "any" : "closest";
   chosen["repeat"] = options.repeat;
   chosen["flavour"] = options.flavour;
+  chosen["accuracy"] = options.accuracy;
   chosen["sort"] = options.sort;
   document["flavour"] = to_string(trace.flavour);
+  document["cost_of_fast"] = trace.cost ? cost_of_fast(*trace.cost) : Json(nullptr);
   document["rays"] = rays;
   document["hits"] = trace.hit_count;
   document["invalid_rays"] = trace.invalid_rays;
@@ -104,6 +122,12 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
                          " to " + fixed(trace.mrays_per_s.max, 3) + "; " +
                          (trace.device_clock ? "device time)" : "wall clock, transfers included)"));
   facts.add("flavour", std::string(to_string(trace.flavour)) + (options.sort ? ", rays sorted first" : ""));
+  if (trace.cost) {
+    facts.add("fast costs",
+              std::to_string(trace.cost->lost) + " hits lost, " + std::to_string(trace.cost->added) +
+                  " added, " + std::to_string(trace.cost->other_triangle) +
+                  " of another triangle; t off by up to " + fixed(trace.cost->max_t_ulp, 0) + " ulp");
+  }
   facts.add("work", fixed(trace.boxes_per_ray, 2) + " boxes and " + fixed(trace.triangles_per_ray, 2) +
                         " triangles a ray");
   return facts.text();
@@ -119,11 +143,8 @@ int run(const Options& options, Console& console) {
   const TimedBuild build = build_for_use(context, scene, tree, {1, true}, console.progress());
   const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
   stop_if_interrupted();
-  TraceOptions how;
-  how.flavour = flavour_from(options.flavour);
-  how.sort_rays = options.sort;
-  const TimedTrace trace =
-      trace_timed(context, build.tree, rays, any_hit, how, options.repeat, console.progress());
+  const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, how_to_trace(options),
+                                       options.repeat, console.progress());
   stop_if_interrupted();
   if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
   if (!options.hits_out.empty()) write_hits(options.hits_out, trace.hits);
@@ -178,6 +199,14 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
           "same, boxes a ray are not")
       ->check(CLI::IsMember({"auto", "thread", "wide", "packet"}))
       ->type_name("F")
+      ->capture_default_str();
+  command
+      ->add_option("--accuracy", options->accuracy,
+                   "watertight: every hit is decided exactly; fast: by floats alone, about a tenth faster on "
+                   "CPUs, and "
+                   "says which hits that cost")
+      ->check(CLI::IsMember({"watertight", "fast"}))
+      ->type_name("A")
       ->capture_default_str();
   command->add_flag("--sort", options->sort,
                     "sort rays by where they start before tracing them, inside the time; hits stay in their "

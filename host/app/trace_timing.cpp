@@ -34,7 +34,9 @@ void count_work(TimedTrace& timed, const TraceResult& counted) {
 }  // namespace
 
 TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::span<const Ray> rays,
-                       bool any_hit, TraceOptions options, std::uint64_t repeat, const Progress& progress) {
+                       bool any_hit, const TraceOptions& how, std::uint64_t repeat,
+                       const Progress& progress) {
+  TraceOptions options = how;
   const Tracer tracer(context, tree, options);
   TimedTrace timed;
   timed.flavour = tracer.flavour();
@@ -57,6 +59,13 @@ TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::s
   timed.mrays_per_s = spread_of(speeds);
   timed.hit_count = count_hits(last);
   timed.invalid_rays = last.invalid_rays;
+  if (how.accuracy == Accuracy::kFast) {
+    options.accuracy = Accuracy::kWatertight;
+    const TraceResult exact = trace_once(Tracer(context, tree, options), rays, any_hit, progress);
+    timed.cost =
+        any_hit ? difference_of(exact.occluded, last.occluded) : difference_of(exact.hits, last.hits);
+    options.accuracy = how.accuracy;
+  }
   timed.hits = std::move(last.hits);
 
   options.counters = true;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "gnomon/base/stats.h"
 #include "gnomon/device/trace_device.h"
+#include "gnomon/tree/hit_difference.h"
 
 namespace gnomon::app {
 
@@ -19,13 +21,14 @@ struct TimedTrace {
   std::vector<double> seconds;  // one per timed pass
   std::vector<double> wall_seconds;
   Spread mrays_per_s;
-  double boxes_per_ray = 0.0;  // from a pass of its own with counters compiled in
+  std::optional<HitDifference> cost;  // of fast accuracy, in hits: from a watertight pass over the same rays
+  double boxes_per_ray = 0.0;         // from a pass of its own with counters compiled in
   double triangles_per_ray = 0.0;
 };
 
-// One pass to warm up, `repeat` timed ones, one that counts. Throws as Tracer.
+// `how`: flavour and accuracy. One pass to warm up, `repeat` timed ones, one that counts. Throws as Tracer.
 [[nodiscard]] TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree,
-                                     std::span<const Ray> rays, bool any_hit, TraceOptions options,
+                                     std::span<const Ray> rays, bool any_hit, const TraceOptions& how,
                                      std::uint64_t repeat, const Progress& progress);
 
 }  // namespace gnomon::app

@@ -15,6 +15,7 @@
 #include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
+#include "oracle_rows.h"
 #include "ray_batch.h"
 #include "scene_source.h"
 
@@ -71,7 +72,7 @@ void check_tree(Findings& findings, const Options& options, const BuildOptions& 
 
 // What is left of the oracle's time is shared evenly by the kinds still to come.
 void check_rays(Findings& findings, const Options& options, const Scene& scene, const Tracer& tracer,
-                const Progress& progress) {
+                bool has_double, const Progress& progress) {
   const auto names = ray_kind_names();
   double seconds_left = options.budget_seconds;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -82,6 +83,7 @@ void check_rays(Findings& findings, const Options& options, const Scene& scene, 
     const double share = std::max(0.0, seconds_left) / static_cast<double>(names.size() - i);
     OracleOptions oracle;
     oracle.max_rays = options.max_rays;
+    oracle.pairs_of_floats = !has_double;
     oracle.time_budget = std::chrono::milliseconds(std::llround(1e3 * share));
     const auto start = Clock::now();
     findings.kinds.push_back(
@@ -92,20 +94,14 @@ void check_rays(Findings& findings, const Options& options, const Scene& scene, 
 
 Json to_json(const KindReport& report) {
   const OracleReport& o = report.oracle;
-  return {{"kind", report.kind},
-          {"rays", o.rays_given},
-          {"judged", o.rays_judged},
-          {"budget_exhausted", o.budget_exhausted},
-          {"hits", o.hits},
-          {"lost", o.lost},
-          {"false_hits", o.false_hits},
-          {"wrong_primitive", o.wrong_primitive},
-          {"any_closest_disagree", o.any_closest_disagree},
-          {"ties", o.ties},
-          {"range_ambiguous", o.range_ambiguous},
-          {"max_t_error_ulp", o.max_t_error_ulp},
-          {"max_uv_error", o.max_uv_error},
-          {"bad_rays", o.bad_rays}};
+  Json row{{"kind", report.kind}};
+  add_oracle(row, o);
+  row["rays"] = o.rays_given;  // the oracle's own count is of those judged
+  row["judged"] = o.rays_judged;
+  row["budget_exhausted"] = o.budget_exhausted;
+  row["max_t_error_ulp"] = o.max_t_error_ulp;
+  row["bad_rays"] = o.bad_rays;
+  return row;
 }
 
 void add_findings(Json& document, const Options& options, const Findings& findings) {
@@ -171,7 +167,8 @@ int run(const Options& options, Console& console) {
   if (findings.fault) {
     console.note("no rays are sent through a broken tree: they might never come back");
   } else {
-    check_rays(findings, options, scene, Tracer(context, build.tree), console.progress());
+    check_rays(findings, options, scene, Tracer(context, build.tree), context.device().fp64,
+               console.progress());
   }
   stop_if_interrupted();
   if (findings.good() && findings.judged() == 0) {

@@ -32,7 +32,7 @@ std::string TracePlan::program_options() const {
   if (wide) {
     return "-DGN_WIDE_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
            " -DGN_RAYS_PER_ITEM=" + std::to_string(rays_per_item) +
-           " -DGN_PORTABLE=" + (portable ? "1" : "0");
+           " -DGN_PORTABLE=" + (portable ? "1" : "0") + (fast ? " -DGN_FAST=1" : "");
   }
   return "-DGN_STACK_SIZE=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
          " -DGN_STEP_LIMIT=" + std::to_string(step_limit);
@@ -59,6 +59,11 @@ TracePlan common_plan(const cl::DeviceInfo& device, const TraceOptions& options)
 
 TracePlan plan_trace(const cl::DeviceInfo& device, const TraceOptions& options, std::uint32_t max_depth,
                      std::uint64_t steps, std::uint32_t state_bytes) {
+  if (options.accuracy == Accuracy::kFast) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "only the wide and packet flavours trace with fast accuracy; the thread flavour is always "
+                "watertight");
+  }
   TracePlan plan = common_plan(device, options);
   plan.stack_size = stack_size_for(max_depth);
   plan.step_limit = step_limit_for(device, options.step_limit);
@@ -81,6 +86,7 @@ TracePlan plan_wide_trace(const cl::DeviceInfo& device, const TraceOptions& opti
   plan.work_group_size = 1;
   plan.wide = true;
   plan.portable = options.portable;
+  plan.fast = options.accuracy == Accuracy::kFast;
   return plan;
 }
 

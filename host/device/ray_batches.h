@@ -22,6 +22,7 @@ struct TracePlan {
   bool counters = false;
   bool wide = false;
   bool portable = false;
+  bool fast = false;  // Accuracy::kFast
   [[nodiscard]] std::string program_options() const;
   [[nodiscard]] std::size_t batch_of(std::size_t rays) const;  // rays per launch
 };

@@ -54,6 +54,10 @@ const char* to_string(TraceFlavour flavour) {
   return "?";
 }
 
+const char* to_string(Accuracy accuracy) {
+  return accuracy == Accuracy::kFast ? "fast" : "watertight";
+}
+
 Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options)
     : context_(context), flavour_(flavour_for(context.device(), options)) {
   if (flavour_ != TraceFlavour::kThread && !collapse(tree, options)) flavour_ = TraceFlavour::kThread;

@@ -28,8 +28,18 @@ enum class TraceFlavour : std::uint32_t {
 };
 [[nodiscard]] const char* to_string(TraceFlavour flavour);
 
+// What hits are worth.
+enum class Accuracy : std::uint32_t {
+  kWatertight,  // decided exactly, t right to the last bit or so (host/notes/exact-hits.md)
+  // By floats alone, wide and packet flavours only: about a tenth faster, and wrong where rays pass edges or
+  // start on surfaces: hits may be lost, added or far off (host/notes/stability.md says how many).
+  kFast,
+};
+[[nodiscard]] const char* to_string(Accuracy accuracy);
+
 struct TraceOptions {
   TraceFlavour flavour = TraceFlavour::kAuto;
+  Accuracy accuracy = Accuracy::kWatertight;
   bool portable = false;  // wide and packet: OpenCL C alone, without the device compiler's own instructions
   // Also count boxes and triangles per ray; slower. Rays of a packet count what their sixteen were tested
   // against, the first also what was tested for all at once.

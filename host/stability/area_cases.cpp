@@ -77,33 +77,45 @@ bool linear(const GnMeasure& measure) {
   return measure.kind == GN_MEASURE_LINEAR;
 }
 
-// Trees for the area's rays: the device's is the reference's, unbroken, and its hits are the oracle's.
+// The verdicts of one tree's options, one for each flavour; new ones where there are none yet.
+std::span<Verdict> verdicts_of(const Bench& bench, const CaseInfo& info, const std::string& builder,
+                               std::vector<Verdict>& all) {
+  std::size_t at = 0;
+  while (at < all.size() && all[at].builder != builder) at += bench.flavours.size();
+  if (at >= all.size()) {
+    for (const Flavour& flavour : bench.flavours)
+      all.push_back(empty_verdict(bench, info, builder, flavour.name));
+  }
+  return std::span(all).subspan(at, bench.flavours.size());
+}
+
+// The device's tree is the reference's, unbroken, and its hits are the oracle's.
+void check_tree(const Bench& bench, const Specimen& specimen, const BuildOptions& options,
+                std::span<Verdict> verdicts) {
+  const DeviceBvh tree = build_device(bench.context, specimen.triangles, options);
+  const Bvh bvh = download_bvh(bench.context, tree);
+  const auto broken = check_bvh(bvh, specimen.triangles, options);
+  const bool same = tree_hash(bvh) == tree_hash(build_reference(specimen.triangles, options));
+  for (Verdict& verdict : verdicts) {
+    if (broken) verdict.fault(broken->what);
+    if (!same) verdict.fault("not the reference's tree");
+  }
+  if (!broken) judge_specimen(bench, specimen, tree, verdicts);
+}
+
+// Trees for the area's rays, and every builder's by surface area under the same rays.
 void check_trees(const Bench& bench, const CaseInfo& info, const Setting& setting, const Triangles& mesh,
                  std::vector<Verdict>& all) {
   for (const InfluenceArea& area : setting.areas) {
     const Specimen specimen{mesh, rays_for(bench, area, mesh), Expect::kOracle};
+    for (const Builder& builder : bench.builders)
+      check_tree(bench, specimen, builder.options, verdicts_of(bench, info, builder.name, all));
     for (const RayMeasure rays : measures_of(area)) {
       for (const bool culled : {false, true}) {
         BuildOptions options;
         options.measure = measure_of(area, rays, culled);
         if (bench.context.device().loop_limit != 0 && !linear(options.measure)) continue;  // refused there
-        const std::string name = heuristic_name(options);
-        std::size_t at = 0;
-        while (at < all.size() && all[at].builder != name) at += bench.flavours.size();
-        if (at >= all.size()) {
-          for (const Flavour& flavour : bench.flavours)
-            all.push_back(empty_verdict(bench, info, name, flavour.name));
-        }
-        const std::span<Verdict> verdicts = std::span(all).subspan(at, bench.flavours.size());
-        const DeviceBvh tree = build_device(bench.context, mesh, options);
-        const Bvh bvh = download_bvh(bench.context, tree);
-        const auto broken = check_bvh(bvh, mesh, options);
-        const bool same = tree_hash(bvh) == tree_hash(build_reference(mesh, options));
-        for (Verdict& verdict : verdicts) {
-          if (broken) verdict.fault(broken->what);
-          if (!same) verdict.fault("not the reference's tree");
-        }
-        if (!broken) judge_specimen(bench, specimen, tree, verdicts);
+        check_tree(bench, specimen, options, verdicts_of(bench, info, heuristic_name(options), all));
       }
     }
   }
@@ -124,21 +136,24 @@ void check_lookup(const Bench& bench, const DeviceForest& forest, AreaLookup loo
   }
 }
 
-// A forest of the setting's areas, grown by so much, over a scene, for these rays.
+// Forests of the setting's areas, grown by so much, over a scene, for these rays: one by each builder.
 void check_forest(const Bench& bench, const CaseInfo& info, const Setting& setting, const Specimen& specimen,
                   double growth, std::vector<Verdict>& forests) {
-  std::vector<LocalTree> trees;
-  for (const InfluenceArea& area : setting.areas)
-    trees.push_back({area, {}, Membership::kExact, setting.tolerance, growth});
-  const DeviceForest forest = build_forest(bench.context, specimen.triangles, trees);
-  const DeviceBvh global = build_device(bench.context, specimen.triangles);
-  const Tracer alone(bench.context, global);
-  const TraceResult closest = alone.closest(specimen.rays);
-  const TraceResult any = alone.any(specimen.rays);
   std::size_t at = 0;
-  for (const AreaLookup lookup : {AreaLookup::kList, AreaLookup::kBvh, AreaLookup::kOctree}) {
-    if (forests.size() <= at) forests.push_back(empty_verdict(bench, info, "forest", to_string(lookup)));
-    check_lookup(bench, forest, lookup, specimen, closest, any, forests[at++]);
+  for (const Builder& builder : bench.builders) {
+    std::vector<LocalTree> trees;
+    for (const InfluenceArea& area : setting.areas)
+      trees.push_back({area, builder.options, Membership::kExact, setting.tolerance, growth});
+    const DeviceForest forest = build_forest(bench.context, specimen.triangles, trees, builder.options);
+    const DeviceBvh global = build_device(bench.context, specimen.triangles, builder.options);
+    const Tracer alone(bench.context, global);
+    const TraceResult closest = alone.closest(specimen.rays);
+    const TraceResult any = alone.any(specimen.rays);
+    for (const AreaLookup lookup : {AreaLookup::kList, AreaLookup::kBvh, AreaLookup::kOctree}) {
+      if (forests.size() <= at)
+        forests.push_back(empty_verdict(bench, info, "forest, " + builder.name, to_string(lookup)));
+      check_lookup(bench, forest, lookup, specimen, closest, any, forests[at++]);
+    }
   }
 }
 

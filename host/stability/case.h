@@ -29,7 +29,7 @@ struct Specimen {
 // A case as people read it. Its number is its name for ever; a case that goes leaves a gap.
 struct CaseInfo {
   std::uint32_t number = 0;
-  std::string group;        // "rays", "geometry", "areas"
+  std::string group;        // "rays", "geometry", "areas", "machines"
   std::string name;         // a few words
   std::string expectation;  // one sentence
 };

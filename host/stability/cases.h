@@ -42,6 +42,11 @@ void add_ray_cases(std::vector<Case>& cases);       // 1 to 11
 void add_range_cases(std::vector<Case>& cases);     // 12 to 19
 void add_geometry_cases(std::vector<Case>& cases);  // 21 to 39
 void add_area_cases(std::vector<Case>& cases);      // 41 to 59
+void add_machine_cases(std::vector<Case>& cases);   // 61 to 69
+
+// Of t, in ulp: what exact-hits.md promises where there is double. Elsewhere the judge knows each hit's
+// bound.
+inline constexpr double kMostUlp = 0.5625;
 
 // Checks of the geometry group that need more than specimens.
 [[nodiscard]] std::vector<Verdict> check_scales(const Bench& bench, const CaseInfo& info);

@@ -8,6 +8,7 @@
 #include "gnomon/scene/generators.h"
 #include "gnomon/stability/aim.h"
 #include "gnomon/stability/flavours.h"
+#include "gnomon/stability/soak_rays.h"
 #include "gnomon/tree/candidate_tree.h"
 
 namespace gnomon::stability {
@@ -40,94 +41,6 @@ Triangles moved(Triangles triangles, float offset) {
   return triangles;
 }
 
-// Draws the rays of one part. The n-th ray depends on seed and n alone, whatever the chunks.
-class RaySource {
- public:
-  RaySource(std::span<const Triangle> triangles, std::uint64_t seed)
-      : triangles_(triangles), extent_(extent_of(triangles)), size_(extent_.size()), seed_(seed) {}
-
-  Ray draw(std::uint64_t number, SoakPart& part) const {
-    SteadyRandom random(seed_, number);
-    switch (number % 8) {
-      case 0:
-      case 1:
-        return at_place(0, number % 16 < 8, random, part);
-      case 2:
-      case 3:
-        return at_place(1, number % 16 < 8, random, part);
-      case 4:
-        return along_axes(random);
-      case 5:
-        return from_surface(random);
-      default:
-        return anywhere(random);
-    }
-  }
-
- private:
-  [[nodiscard]] Point target(std::uint32_t kind, SteadyRandom& random) const {
-    return place_on(triangles_[random.below(static_cast<unsigned>(triangles_.size()))], kind, random);
-  }
-  [[nodiscard]] Point in_bounds(SteadyRandom& random) const {
-    Point p{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      p[k] = static_cast<float>(random.between(extent_.lo[k] - 0.2 * size_, extent_.hi[k] + 0.2 * size_));
-    }
-    return p;
-  }
-
-  // Half of them start so that the direction is exact, the others anywhere.
-  Ray at_place(std::uint32_t kind, bool exactly, SteadyRandom& random, SoakPart& part) const {
-    const Point place = target(kind, random);
-    Ray ray = exactly ? through(place, 0.5F * size_, random) : towards(in_bounds(random), place);
-    (kind == 0 ? part.at_corners : part.at_edges) += 1;
-    if (passes_exactly(ray, place)) part.exactly += 1;
-    return valid(ray);
-  }
-
-  // Along an axis, or in the plane of two, through a corner: in faces of boxes.
-  Ray along_axes(SteadyRandom& random) const {
-    const Point place = target(0, random);
-    const std::size_t axis = random.below(3);
-    const float zero = random.chance(0.5) ? 0.0F : -0.0F;
-    Point along{zero, zero, zero};
-    along[axis] = random.chance(0.5) ? 1.0F : -1.0F;
-    if (random.chance(0.5)) along[(axis + 1) % 3] = static_cast<float>(random.between(-1, 1));
-    Point from = place;
-    for (std::size_t k = 0; k < 3; ++k) from[k] -= along[k] == 0.0F ? 0.0F : size_ * along[k];
-    return ray_of(from, along);
-  }
-
-  Ray from_surface(SteadyRandom& random) const {
-    const Point from = target(random.below(3), random);
-    return valid(ray_of(from, direction(random)));
-  }
-
-  Ray anywhere(SteadyRandom& random) const {
-    Ray ray = ray_of(in_bounds(random), direction(random));
-    if (random.chance(0.25)) ray.tmax = static_cast<float>(random.between(0, 0.5)) * size_;
-    return valid(ray);
-  }
-
-  static Point direction(SteadyRandom& random) {
-    Point d{};
-    for (float& x : d) x = static_cast<float>(random.between(-1, 1));
-    return d;
-  }
-  // A place may be the ray's own start.
-  static Ray valid(Ray ray) {
-    const float* const d = ray.direction;
-    if (std::max({std::fabs(d[0]), std::fabs(d[1]), std::fabs(d[2])}) < GN_SHORTEST_DIRECTION)
-      ray.direction[1] = 1.0F;
-    return ray;
-  }
-
-  std::span<const Triangle> triangles_;
-  Extent extent_;
-  float size_;
-  std::uint64_t seed_;
-};
-
 // How far the whole run is, for people.
 class Clockwork {
  public:
@@ -158,7 +71,8 @@ class Station {
  public:
   Station(const cl::Context& context, Triangles triangles, const Builder& builder,
           const std::vector<Flavour>& flavours)
-      : triangles_(std::move(triangles)),
+      : pairs_of_floats_(!context.device().fp64),
+        triangles_(std::move(triangles)),
         tree_(build_device(context, triangles_, builder.options)),
         candidates_(triangles_) {
     for (const Flavour& flavour : flavours) tracers_.emplace_back(context, tree_, flavour.options);
@@ -180,6 +94,7 @@ class Station {
     options.max_rays = rays.size();
     options.time_budget = std::chrono::hours(1000);
     options.threads = threads;
+    options.pairs_of_floats = pairs_of_floats_;
     options.tree = &candidates_;
     OracleReport report = judge(triangles_, rays, closest.hits, any.occluded, options);
     for (std::uint64_t& bad : report.bad_rays) bad += part.rays;
@@ -192,6 +107,7 @@ class Station {
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
 
  private:
+  bool pairs_of_floats_;
   Triangles triangles_;
   DeviceBvh tree_;
   CandidateTree candidates_;

@@ -16,6 +16,7 @@
 #include "gnomon/tree/candidate_tree.h"
 #include "gnomon/tree/candidates.h"
 #include "gnomon/tree/exact_hit.h"
+#include "gnomon/tree/pair_bound.h"
 
 namespace gnomon {
 
@@ -44,8 +45,10 @@ struct Batch {
   std::span<const std::uint32_t> any;
   const OracleOptions& options;
 
-  [[nodiscard]] double tolerance(const ExactHit& hit) const {
-    return options.t_tolerance_ulp * float_ulp(hit.t) + hit.t_error;
+  // Of what the device says of a triangle that this ray meets.
+  [[nodiscard]] double tolerance(std::uint64_t index, const FoundHit& found) const {
+    const double pairs = options.pairs_of_floats ? pair_error_bound(rays[index], *found.triangle) : 0.0;
+    return options.t_tolerance_ulp * float_ulp(found.hit.t) + found.hit.t_error + pairs;
   }
 };
 
@@ -86,7 +89,7 @@ void gather(const Batch& batch, std::uint64_t index, std::uint32_t primitive, Fi
   const Ray& ray = batch.rays[index];
   const FoundHit found{&batch.triangles[primitive], exact_intersect(ray, batch.triangles[primitive])};
   if (!found.hit.inside) return;
-  const double tolerance = batch.tolerance(found.hit);
+  const double tolerance = batch.tolerance(index, found);
   if (!is_possible(ray, found.hit, tolerance)) return;
   findings.hit = findings.hit || in_range(ray, found);
   if (!batch.hits.empty() && std::fabs(batch.hits[index].t - found.hit.t) <= tolerance) {
@@ -107,12 +110,13 @@ Fault fault_of_closest(const Batch& batch, std::uint64_t index, const Findings& 
   const Hit& reported = batch.hits[index];
   if (reported.primitive == GN_NONE) return findings.has_safe() ? &OracleReport::lost : nullptr;
   if (reported.primitive >= batch.triangles.size()) return &OracleReport::wrong_primitive;
-  if (findings.has_safe() && reported.t > findings.safe.hit.t + batch.tolerance(findings.safe.hit)) {
+  if (findings.has_safe() && reported.t > findings.safe.hit.t + batch.tolerance(index, findings.safe)) {
     return &OracleReport::lost;
   }
   if (!findings.reported_t_exists) return &OracleReport::false_hits;
-  const ExactHit named = exact_intersect(batch.rays[index], batch.triangles[reported.primitive]);
-  const double tolerance = batch.tolerance(named);
+  const Triangle& triangle = batch.triangles[reported.primitive];
+  const ExactHit named = exact_intersect(batch.rays[index], triangle);
+  const double tolerance = batch.tolerance(index, {&triangle, named});
   const bool there = named.inside && std::fabs(reported.t - named.t) <= tolerance &&
                      is_possible(batch.rays[index], named, tolerance);
   return there ? nullptr : &OracleReport::wrong_primitive;
@@ -193,11 +197,14 @@ void judge_by_tree(const Batch& batch, std::uint64_t index, OracleReport& report
   const Ray& ray = batch.rays[index];
   const double tolerance = batch.options.t_tolerance_ulp;
   const FiniteRange range(ray);
-  const double tmax = widened(range.tmax, 1.0, tolerance);
+  // How far off pairs of floats are is known of each triangle only.
+  const bool pairs = batch.options.pairs_of_floats;
+  const double tmin = pairs ? -kInfinity : widened(range.tmin, -1.0, tolerance);
+  const double tmax = pairs ? kInfinity : widened(range.tmax, 1.0, tolerance);
   Findings findings;
-  batch.options.tree->visit(ray, widened(range.tmin, -1.0, tolerance), tmax, [&](std::uint32_t primitive) {
+  batch.options.tree->visit(ray, tmin, tmax, [&](std::uint32_t primitive) {
     gather(batch, index, primitive, findings);
-    return findings.has_safe() ? widened(findings.safe.hit.t, 1.0, tolerance) : tmax;
+    return findings.has_safe() && !pairs ? widened(findings.safe.hit.t, 1.0, tolerance) : tmax;
   });
   judge_ray(batch, index, findings, report);
 }

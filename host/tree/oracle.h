@@ -48,6 +48,8 @@ struct OracleOptions {
   std::chrono::milliseconds time_budget{20000};  // stop early, keep what is judged
   unsigned threads = 0;                          // 0: all
   double t_tolerance_ulp = 4.0;  // of the device's t, before a nearer or farther hit is a fault
+  // The device has no double: t may also be off by pair_error_bound (pair_bound.h).
+  bool pairs_of_floats = false;
   // Of the same triangles: rays look at what it offers them, not at every triangle. For many rays.
   const CandidateTree* tree = nullptr;
 };

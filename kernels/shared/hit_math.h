@@ -231,6 +231,20 @@ GN_INLINE int gn_triangle_hit(const GnRayFrame* ray, const gn_f32* v0, const gn_
   return verdict != 0 && gn_triangle_resolve(ray, v0, v1, v2, verdict, hit);
 }
 
+// The same by floats alone, without error bounds: hits at edges may be lost or added, t may be off by any number of
+// ulp. For GN_FAST kernels.
+GN_INLINE int gn_triangle_by_floats(const GnRayFrame* ray, const gn_f32* v0, const gn_f32* v1, const gn_f32* v2,
+                                    GnHit* hit) {
+  const GnEdges e = gn_triangle_edges(ray, v0, v1, v2);
+  const gn_f32 sum = e.u + e.v + e.w;
+  if (gn_min(gn_min(e.u, e.v), e.w) < 0.0f && gn_max(gn_max(e.u, e.v), e.w) > 0.0f) return 0;
+  if (!(gn_abs(sum) > 0.0f)) return 0;
+  hit->t = (e.u / sum * e.az + e.v / sum * e.bz + e.w / sum * e.cz) / ray->direction[ray->kz];
+  hit->u = e.v / sum;
+  hit->v = e.w / sum;
+  return 1;
+}
+
 // Whether `hit` (range already checked) comes before the best so far: nearer, or as near with a lower index, so that
 // the answer does not depend on the order in which a tree offers triangles.
 GN_INLINE int gn_hit_is_nearer(const GnHit* hit, const GnHit* best) {

@@ -132,3 +132,26 @@ TEST_CASE("a ray file that cannot be used exits 4") {
   CHECK(run({"trace", "gen:random:100", "--rays-in", folder.file("short")}).status == 4);
   CHECK(run({"trace", "gen:random:100", "--rays-in", folder.file("missing")}).status == 4);
 }
+
+TEST_CASE("fast accuracy says which hits it costs; the default costs none and says nothing") {
+  const auto trace = [](const char* accuracy) {
+    return run({"trace", "gen:city:3000", "--count", "5000", "--repeat", "1", "--rays", "bounce",
+                "--accuracy", accuracy, "--json"});
+  };
+  const auto exact = trace("watertight");
+  REQUIRE(exact.status == 0);
+  CHECK(json::parse(exact.out).at("cost_of_fast").is_null());
+  const auto fast = trace("fast");
+  CAPTURE(fast.out, fast.err);
+  const json document = json::parse(exact.out);
+  if (document.at("flavour") == "thread") {
+    CHECK(fast.status == 2);
+    return;
+  }
+  REQUIRE(fast.status == 0);
+  const json cost = json::parse(fast.out).at("cost_of_fast");
+  CHECK(cost.at("lost").get<int>() + cost.at("added").get<int>() < 500);
+  CHECK(cost.at("max_t_ulp").get<double>() > 1.0);
+  CHECK(json::parse(fast.out).at("options").at("accuracy") == "fast");
+  CHECK(run({"trace", "gen:random:100", "--accuracy", "sloppy"}).status == 2);
+}

@@ -118,3 +118,16 @@ TEST_CASE("kernels that do not compile, or are not there, are failures that say 
   CHECK(missing.status == 1);
   CHECK_THAT(missing.err, Contains("GNOMON_KERNELS"));
 }
+
+TEST_CASE("every kind says how wrong t is, as a distribution that adds up to its hits") {
+  const auto outcome = run({"validate", "gen:random:500", "--count", "300", "--json"});
+  REQUIRE(outcome.status == 0);
+  const json document = json::parse(outcome.out);
+  for (const json& kind : document.at("kinds")) {
+    std::uint64_t hits = 0;
+    for (const json& step : kind.at("t_error_steps")) hits += step[1].get<std::uint64_t>();
+    CHECK(hits == kind.at("hits"));
+    for (const char* key : {"lost", "false_hits", "wrong_primitive", "t_error_ulp"})
+      CHECK(kind.contains(key));
+  }
+}

@@ -93,8 +93,8 @@ TEST_CASE("the cooperative flavour builds the same small trees", "[memcheck]") {
 
 TEST_CASE("the tree does not depend on how the work is cut") {
   const auto triangles = gnomon::test::soup(20000, 52);
-  for (const BuildOptions& options :
-       {cut(0, 0, 0), cut(1, 64, 64), cut(1, 1000, 333), cut(1, 1048576, 8192), cut(16, 1024, 512)}) {
+  for (const BuildOptions& options : {cut(0, 0, 0), cut(1, 64, 64), cut(1, 1000, 333), cut(1, 1048576, 8192),
+                                      cut(2, 64, 128), cut(4, 512, 512), cut(16, 1024, 512)}) {
     CAPTURE(options.work_group_size, options.subtree_size, options.chunk_size);
     require_same(triangles, options);
   }

@@ -7,6 +7,7 @@
 
 #include "gnomon/shared/hit_math.h"
 #include "gnomon/tree/oracle.h"
+#include "gnomon/tree/pair_bound.h"
 #include "support/shapes.h"
 
 using gnomon::test::Random;
@@ -87,4 +88,48 @@ TEST_CASE(
     }
   }
   REQUIRE(met > 1000);
+}
+
+// As for double (hit_math_test): needles, starts in or next to the plane, far from the origin.
+TEST_CASE("without double, t is within the derived bound of the exact one, for any triangle that is met") {
+  Random random(301);
+  int met = 0;
+  double worst = 0.0;
+  double most_ulp = 0.0;
+  for (int i = 0; i < 300'000; ++i) {
+    const float offset = i % 3 == 0 ? 0.0F : i % 3 == 1 ? 1e3F : 1e6F;
+    const float width = std::ldexp(1.0F, -static_cast<int>(random.below(30)));
+    std::array<float, 3> a{}, b{}, c{}, inside{}, d{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      a[k] = offset + random.between(-10, 10);
+      b[k] = a[k] + random.between(-10, 10);
+      c[k] = 0.5F * (a[k] + b[k]) + width * random.between(-1, 1);
+      inside[k] = 0.25F * a[k] + 0.25F * b[k] + 0.5F * c[k];
+      d[k] = random.between(-1, 1);
+    }
+    const float back = i % 4 == 0   ? 0.0F
+                       : i % 4 == 1 ? random.between(-1e-5F, 1e-5F)
+                                    : random.between(-20, 20);
+    for (std::size_t k = 0; k < 3; ++k) inside[k] -= back * d[k];
+    const GnRay ray = gnomon::test::ray(inside, d);
+    const GnTriangle t = gnomon::test::triangle(a, b, c);
+    const gnomon::ExactHit exact = gnomon::exact_intersect(ray, t);
+    if (!exact.inside) continue;
+    const GnRayFrame frame = gn_ray_frame(&ray);
+    GnHit hit{};
+    CAPTURE(i, exact.t);
+    REQUIRE(gn_triangle_hit(&frame, t.v0, t.v1, t.v2, &hit) != 0);
+    const double ulp =
+        std::ldexp(1.0, std::max(std::ilogb(std::max(std::fabs(exact.t), 0x1p-126)), -126) - 23);
+    const double error = std::fabs(static_cast<double>(hit.t) - exact.t) - exact.t_error;
+    const double bound = 0.51 * ulp + gnomon::pair_error_bound(ray, t);
+    CAPTURE(hit.t, error, bound);
+    REQUIRE(error <= bound);
+    worst = std::max(worst, error / bound);
+    most_ulp = std::max(most_ulp, error / ulp);
+    ++met;
+  }
+  REQUIRE(met > 20'000);
+  REQUIRE(worst > 0.5);
+  REQUIRE(most_ulp > 100.0);  // a bound in ulp alone would not hold
 }

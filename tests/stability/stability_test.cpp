@@ -9,6 +9,7 @@
 #include "gnomon/stability/catalogue.h"
 #include "gnomon/stability/flavours.h"
 #include "gnomon/stability/soak.h"
+#include "gnomon/stability/soak_rays.h"
 #include "support/device.h"
 
 using namespace gnomon;
@@ -147,4 +148,35 @@ TEST_CASE("a long run stops where it is told, and refuses to be none") {
   REQUIRE(report.total().rays == 300);
   options.rays = 0;
   REQUIRE_THROWS_AS(soak(test::context(), options), Error);
+}
+
+// Sixteen rays of a packet are tested against the same triangles; sixteen single rays hardly ever are.
+TEST_CASE("a quarter of a long run's rays come in bundles, and most of these are traced as packets") {
+  if (test::context().device().loop_limit != 0) return;  // such devices have no packets
+  const Scene scene = generate_scene("terrain", 5000, 1);
+  const RaySource source(scene.triangles, 1);
+  SoakPart part;
+  std::vector<Ray> rays;
+  for (std::uint64_t i = 0; i < 16384; ++i) rays.push_back(source.draw(i, part));
+  TraceOptions options;
+  options.flavour = TraceFlavour::kPacket;
+  options.counters = true;
+  const DeviceBvh tree = build_device(test::context(), scene.triangles);
+  const TraceResult traced = Tracer(test::context(), tree, options).closest(rays);
+  int packets = 0;
+  int bundled = 0;
+  int single = 0;
+  for (std::size_t first = 0; first < rays.size(); first += 16) {
+    bool same = traced.counters[first].triangles > 0;
+    for (std::size_t i = first + 1; i < first + 16; ++i)
+      same &= traced.counters[i].triangles == traced.counters[first].triangles;
+    const bool in_bundle = first / RaySource::kBundle % 4 == 3;
+    bundled += in_bundle ? 1 : 0;
+    packets += in_bundle && same ? 1 : 0;
+    single += !in_bundle && same ? 1 : 0;
+  }
+  CAPTURE(packets, bundled, single);
+  REQUIRE(bundled == 256);
+  REQUIRE(packets > 128);
+  REQUIRE(single == 0);
 }

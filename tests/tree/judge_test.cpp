@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "gnomon/tree/pair_bound.h"
 #include "judge_cases.h"
 
 using gnomon::Hit;
@@ -187,5 +188,26 @@ TEST_CASE("a ray that cannot be traced must miss") {
     CHECK(counts(judge_one(ray, kMiss)) == kClean);
     CHECK(counts(judge_one(ray, hit_at(3, 0))) == kFalse);
     CHECK(counts(judge_any(ray, 1)) == kFalse);
+  }
+}
+
+TEST_CASE("of a device without double, t may be off by its derived bound and no more") {
+  // A needle, met in its middle from the side: 1e-8 as wide as long.
+  const std::vector<GnTriangle> triangles{{{-1, 0, 5}, {1, 0.1F, 9}, {0, 0.05000002F, 7}}};
+  const std::vector<GnRay> rays{{{-3.0F, 0.05000001F, -6.0F}, 0.0F, {3.0F, 0.0F, 13.0F}, 1e30F}};
+  const gnomon::ExactHit exact = gnomon::exact_intersect(rays[0], triangles[0]);
+  REQUIRE(exact.inside);
+  const double bound = gnomon::pair_error_bound(rays[0], triangles[0]);
+  REQUIRE(bound > 100.0 * 0x1p-24);
+  const auto faults_at = [&](double t, bool pairs) {
+    gnomon::OracleOptions options;
+    options.pairs_of_floats = pairs;
+    const std::vector<GnHit> hits{{static_cast<float>(t), 0.25F, 0.25F, 0}};
+    return gnomon::judge(triangles, rays, hits, {}, options).mismatches();
+  };
+  for (const double sense : {1.0, -1.0}) {
+    CHECK(faults_at(exact.t + sense * 0.9 * bound, true) == 0);
+    CHECK(faults_at(exact.t + sense * 0.9 * bound, false) == 1);
+    CHECK(faults_at(exact.t + sense * (1.5 * bound + 1e-5), true) == 1);
   }
 }

@@ -34,8 +34,39 @@ __kernel void load_slots(__global const GnNode* nodes, __global const uint* orde
   }
 }
 
-// One work-item. Cuts the tree into subtrees of about `limit` inner nodes by the sizes that were last known: their roots go
-// to tasks, the inner nodes above them to top, parents first. numbers: how many of each.
+// One work-item. Cuts a tree as it was loaded, numbered as builders number, into subtrees of at most `limit` inner nodes:
+// their roots go to tasks, the inner nodes above them to top, parents first. numbers: how many of each. An inner node's
+// subtree has the splits of a range of ranks: from, to.
+__kernel void cut_loaded(__global const GnNode* slots, uint inner, uint limit, __global uint* tasks, __global uint* top,
+                         __global uint* from, __global uint* to, __global uint* numbers) {
+  uint task_count = 0u, top_count = 0u, done, side;
+  if (inner > 0u) {
+    top[0] = GN_ROOT_SLOT;
+    from[0] = 0u;
+    to[0] = inner;
+    top_count = 1u;
+  }
+  for (done = 0u; done < top_count; ++done) {
+    const uint first = slots[top[done]].first, rank = first / 2u - 1u;
+    for (side = 0u; side < 2u; ++side) {
+      const uint begin = side ? rank + 1u : from[done], end = side ? to[done] : rank;
+      if (end > begin && end - begin <= limit) {
+        tasks[task_count] = first + side;
+        task_count += 1u;
+      } else if (end > begin) {
+        top[top_count] = first + side;
+        from[top_count] = begin;
+        to[top_count] = end;
+        top_count += 1u;
+      }
+    }
+  }
+  numbers[0] = task_count;
+  numbers[1] = top_count;
+}
+
+// One work-item. The same of a tree that moves have changed, into subtrees that had about so many when sizes were last
+// worked out.
 __kernel void cut_slots(__global const GnNode* slots, __global const GnBelow* below, uint limit, __global uint* tasks,
                         __global uint* top, __global uint* numbers) {
   uint task_count = 0u, top_count = 0u, done, side;

@@ -17,8 +17,8 @@ namespace {
 constexpr std::uint32_t kSlotRun = 1024;
 constexpr std::uint32_t kCandidateRun = 16;
 
-// Turns of the loops that one node costs in the one work-item that cuts the tree and joins its top.
-constexpr std::uint64_t kTurnsPerNode = 8;
+// Turns of the loops that one node may cost in the one work-item that cuts the tree and joins its top.
+constexpr std::uint64_t kTurnsPerNode = 2;
 
 std::uint64_t slots_of(std::uint64_t nodes) {
   return nodes + 1;
@@ -42,12 +42,13 @@ class Optimiser {
     std::size_t next = 0;
     for (const BufferNeed& need : optimise_memory(nodes_))
       *all[next++] = context.create_buffer(need.name, static_cast<std::size_t>(need.bytes));
-    context.fill(below_, 0);  // sizes are not known yet
     launch("load", "load_slots", nodes_, tree.nodes, tree.order, slots_, above_, nodes_);
   }
 
   DeviceBvh run() {
-    join();
+    launch("join", "cut_loaded", 1, slots_, nodes_ / 2, inner_per_task(nodes_), tasks_, top_, gains_, owners_,
+           numbers_);
+    join_cut();
     require_depth(whole().height);
     const Node root = context_.download_values<Node>(slots_, 1, GN_ROOT_SLOT).front();
     GnFaces faces{};
@@ -115,16 +116,25 @@ class Optimiser {
     times_.add(stage, cl::enqueue(context_.queue(), kernel.get(), (items + local - 1) / local * local, local));
   }
 
-  void cut() {
-    launch("join", "cut_slots", 1, slots_, below_, inner_per_task(nodes_), tasks_, top_, numbers_);
+  void read_cut() {
     const auto found = context_.download_values<std::uint32_t>(numbers_, 2);
     task_count_ = found[0];
     top_count_ = found[1];
   }
 
+  void cut() {
+    launch("join", "cut_slots", 1, slots_, below_, inner_per_task(nodes_), tasks_, top_, numbers_);
+    read_cut();
+  }
+
   // Boxes, sizes and heights from the leaves up.
   void join() {
-    cut();
+    launch("join", "cut_slots", 1, slots_, below_, inner_per_task(nodes_), tasks_, top_, numbers_);
+    join_cut();
+  }
+
+  void join_cut() {
+    read_cut();
     launch("join", "join_subtrees", task_count_, slots_, above_, below_, tasks_, task_count_);
     launch("join", "join_top", 1, slots_, below_, top_, top_count_);
   }

@@ -10,7 +10,7 @@
 
 namespace gnomon {
 
-// A new tree; the one given stays as it is. Its bytes depend on that tree and the options alone. Stages and times are
+// A new tree; the one given, which is numbered as builders number, stays as it is. Its bytes depend on that tree and the options alone. Stages and times are
 // added to `report`. Throws Error: kInvalidArgument (options; a tree deeper than 128; a device that ends the loops this
 // takes), kOutOfMemory, kDevice.
 [[nodiscard]] DeviceBvh optimise_device(const cl::Context& context, const DeviceBvh& tree,

@@ -1,0 +1,108 @@
+#include "gnomon/tree/parts.h"
+
+#include <algorithm>
+
+#include "gnomon/tree/build_reference.h"
+
+namespace gnomon {
+
+namespace {
+
+GnCut cut_of(const GnTriangle& triangle) {
+  GnCut cut{};
+  const float* const corners[] = {triangle.v0, triangle.v1, triangle.v2};
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) cut.corner[i][k] = gn_without_negative_zero(corners[i][k]);
+  }
+  return cut;
+}
+
+GnPlaneGrid grid_of(const std::vector<GnPrimitive>& boxes) {
+  float lo[3];
+  float hi[3];
+  gn_empty_box(lo, hi);
+  for (const GnPrimitive& box : boxes) {
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = gn_min(box.lo[k], lo[k]);
+      hi[k] = gn_max(box.hi[k], hi[k]);
+    }
+  }
+  return gn_plane_grid(lo, hi);
+}
+
+// Dividing pays where boxes waste much beside the scene's own: below this many of it, all together, none is divided.
+constexpr std::uint64_t kLeastWaste = std::uint64_t{1} << 40U;
+
+// As many primitives as builders index.
+constexpr std::uint64_t kMostIndices = 0x7fffffff;
+
+}  // namespace
+
+std::uint64_t most_parts(std::uint64_t triangles, float budget) {
+  const auto most = triangles + static_cast<std::uint64_t>(static_cast<double>(budget) * static_cast<double>(triangles));
+  return std::max(triangles, std::min(most, kMostIndices));
+}
+
+std::uint32_t waste_floor(std::span<const std::uint32_t> bins, std::uint64_t waste, float budget) {
+  std::uint64_t triangles = 0;
+  for (const std::uint32_t count : bins) triangles += count;
+  const std::uint64_t most = most_parts(triangles, budget) - triangles;
+  if (waste < kLeastWaste || most == 0) return GN_NONE;
+  const auto splits_from = [&](std::uint32_t floor) {
+    std::uint64_t splits = 0;
+    for (std::uint32_t bin = floor; bin < bins.size(); ++bin)
+      splits += std::uint64_t{bins[bin]} * gn_splits_of(bin, floor);
+    return splits;
+  };
+  // More are divided, and more often, the lower the floor is.
+  std::uint32_t low = 1;
+  auto high = static_cast<std::uint32_t>(bins.size());
+  while (low < high) {
+    const std::uint32_t middle = (low + high) / 2;
+    if (splits_from(middle) <= most)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return high == bins.size() ? GN_NONE : high;
+}
+
+std::vector<GnPrimitive> parts_of(std::span<const GnTriangle> triangles, float budget) {
+  std::vector<GnPrimitive> boxes;
+  boxes.reserve(triangles.size());
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) boxes.push_back(primitive_of(triangles[i], i));
+  if (boxes.empty()) return boxes;
+  GnPlaneGrid grid = grid_of(boxes);
+  std::vector<std::uint32_t> bins(GN_WASTE_BINS);
+  std::vector<std::uint32_t> bin_of;
+  std::uint64_t waste = 0;
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    const GnCut cut = cut_of(triangles[i]);
+    const float area = gn_wasted_area(&cut, boxes[i].lo, boxes[i].hi);
+    bin_of.push_back(gn_waste_bin(area));
+    bins[bin_of.back()] += 1;
+    waste += static_cast<std::uint64_t>(area * grid.units);
+  }
+  grid.floor = waste_floor(bins, waste, budget);
+  if (grid.floor == GN_NONE) return boxes;
+  std::vector<GnPrimitive> out;
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    const GnCut cut = cut_of(triangles[i]);
+    GnPart parts[GN_MOST_PARTS];
+    std::copy_n(boxes[i].lo, 3, parts[0].lo);
+    std::copy_n(boxes[i].hi, 3, parts[0].hi);
+    parts[0].splits = gn_splits_of(bin_of[i], grid.floor);
+    std::uint32_t height = 1;
+    GnPart one;
+    while (gn_next_part(&grid, &cut, parts, &height, &one) != 0) {
+      GnPrimitive primitive{};
+      std::copy_n(one.lo, 3, primitive.lo);
+      std::copy_n(one.hi, 3, primitive.hi);
+      primitive.index = i;
+      out.push_back(primitive);
+    }
+  }
+  return out;
+}
+
+}  // namespace gnomon

@@ -72,7 +72,8 @@ void add_options(CLI::App& program, Settings& s) {
       ->capture_default_str();
   program
       .add_option("--builders", s.builders,
-                  "of our trees, by commas; balanced is set beside MEDIUM, fast beside LOW and best beside HIGH, these two with "
+                  "of our trees, by commas; balanced is set beside MEDIUM, fast beside LOW and best beside "
+                  "HIGH, these two with "
                   "single rays")
       ->delimiter(',')
       ->check(CLI::IsMember({"balanced", "fast", "best"}))
@@ -145,7 +146,8 @@ class SceneBench {
   }
 
  private:
-  // Balanced trees beside Embree in both its modes; fast ones beside its own fast ones, best ones beside its best.
+  // Balanced trees beside Embree in both its modes; fast ones beside its own fast ones, best ones beside its
+  // best.
   void run_builder(EmbreeQuality quality) {
     EmbreeScene fast(scene_.triangles, quality, false, threads_);
     EmbreeScene robust(scene_.triangles, quality, true, threads_);
@@ -261,7 +263,8 @@ class SceneBench {
     gnomon::TraceOptions options;
     options.counters = counters;
     options.portable = flavour.starts_with("portable");
-    options.flavour = flavour.ends_with("packet") ? gnomon::TraceFlavour::kPacket : gnomon::TraceFlavour::kWide;
+    options.flavour =
+        flavour.ends_with("packet") ? gnomon::TraceFlavour::kPacket : gnomon::TraceFlavour::kWide;
     if (flavour != "thread") return std::make_unique<gnomon::Tracer>(context_, wide_, options);
     options.flavour = gnomon::TraceFlavour::kThread;
     return std::make_unique<gnomon::Tracer>(context_, tree_, options);

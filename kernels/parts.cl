@@ -37,25 +37,16 @@ static inline float waste_of(__global const float* triangles, __global const flo
   return gn_wasted_area(&cut, part.lo, part.hi);
 }
 
-// One work-item per run. wastes: receives each triangle's bin. bins: how many are in each. sums: of the run's areas, in
-// the grid's units.
-__kernel void weigh_waste(__global const float* triangles, __global const float8* primitives,
-                          __global const GnPlaneGrid* grid_in, __global ushort* wastes, volatile __global uint* bins,
-                          __global ulong* sums, uint count, uint run) {
-  const uint chunk = (uint)get_global_id(0);
-  const uint begin = chunk * run;
-  const float units = grid_in->units;
-  ulong sum = 0u;
+// One work-item per run. wastes: receives each triangle's bin. bins: how many are in each.
+__kernel void weigh_waste(__global const float* triangles, __global const float8* primitives, __global ushort* wastes,
+                          volatile __global uint* bins, uint count, uint run) {
+  const uint begin = (uint)get_global_id(0) * run;
   uint i;
-  if (begin >= count) return;
   for (i = begin; i < count && i < begin + run; ++i) {
-    const float waste = waste_of(triangles, primitives, i);
-    const uint bin = gn_waste_bin(waste);
+    const uint bin = gn_waste_bin(waste_of(triangles, primitives, i));
     wastes[i] = (ushort)bin;
     atomic_inc(bins + bin);
-    sum += (ulong)(waste * units);
   }
-  sums[chunk] = sum;
 }
 
 static inline void start_parts(__global const float* triangles, __global const float8* primitives, uint i, uint splits,

@@ -145,9 +145,10 @@ __kernel void join_top(__global GnNode* slots, __global GnBelow* below, __global
   for (i = top_count; i > 0u; --i) join_pair(slots, below, top[i - 1u]);
 }
 
-// One work-item per run of slots: counts the costs of all nodes but the root in bins, and adds those of inner ones up.
-__kernel void weigh_slots(__global const GnNode* slots, volatile __global uint* bins, __global ulong* sums, float wx,
-                          float wy, float wz, float units, uint count, uint run) {
+// One work-item per run of slots: puts the costs of all nodes but the root in bins, counts these, and adds the costs of
+// inner nodes up.
+__kernel void weigh_slots(__global const GnNode* slots, __global ushort* cost_bins, volatile __global uint* bins,
+                          __global ulong* sums, float wx, float wy, float wz, float units, uint count, uint run) {
   const uint chunk = (uint)get_global_id(0);
   const uint begin = GN_ROOT_SLOT + chunk * run;
   const GnFaces faces = {{wx, wy, wz}};
@@ -156,20 +157,21 @@ __kernel void weigh_slots(__global const GnNode* slots, volatile __global uint* 
   if (begin > count) return;
   for (i = begin; i <= count && i < begin + run; ++i) {
     const float cost = gn_slot_cost(&faces, slots + i);
-    if (i != GN_ROOT_SLOT) atomic_inc(bins + gn_cost_bin(cost));
+    const uint bin = gn_cost_bin(cost);
+    cost_bins[i] = (ushort)bin;
+    if (i != GN_ROOT_SLOT) atomic_inc(bins + bin);
     if (slots[i].count == 0u) sum += gn_cost_units(cost, units);
   }
   sums[chunk] = sum;
 }
 
 // One work-item per run of slots: those of nodes whose costs are in bins from `floor` on, in any order.
-__kernel void list_candidates(__global const GnNode* slots, __global uint* candidates, volatile __global uint* length,
-                              float wx, float wy, float wz, uint floor, uint count, uint run) {
+__kernel void list_candidates(__global const ushort* cost_bins, __global uint* candidates,
+                              volatile __global uint* length, uint floor, uint count, uint run) {
   const uint begin = GN_ROOT_SLOT + (uint)get_global_id(0) * run;
-  const GnFaces faces = {{wx, wy, wz}};
   uint i;
   for (i = begin; i <= count && i < begin + run; ++i) {
-    if (i != GN_ROOT_SLOT && gn_cost_bin(gn_slot_cost(&faces, slots + i)) >= floor) candidates[atomic_inc(length)] = i;
+    if (i != GN_ROOT_SLOT && cost_bins[i] >= floor) candidates[atomic_inc(length)] = i;
   }
 }
 

@@ -84,7 +84,8 @@ void add_build_options(CLI::App& command, BuildOptions& options) {
   command
       .add_option_function<std::string>(
           "--builder", [&options, builders](const std::string& name) { options.builder = builders.at(name); },
-          "balanced: top down by the heuristic; fast: along the Morton curve, by surface area; best: balanced over "
+          "balanced: top down by the heuristic; fast: along the Morton curve, by surface area; best: "
+          "balanced over "
           "parts of large triangles, then optimised")
       ->check(CLI::IsMember(
           {to_string(Builder::kBalanced), to_string(Builder::kFast), to_string(Builder::kBest)}))

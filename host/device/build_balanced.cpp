@@ -19,12 +19,16 @@ class DeviceBuilder {
  public:
   DeviceBuilder(const cl::Context& context, const BuildOptions& options, const BuildPlan& plan,
                 cl_mem triangles, cl::Buffer parts)
-      : context_(context), options_(options), plan_(plan), triangles_(triangles), primitives_a_(std::move(parts)) {
+      : context_(context),
+        options_(options),
+        plan_(plan),
+        triangles_(triangles),
+        primitives_a_(std::move(parts)) {
     has_parts_ = static_cast<bool>(primitives_a_.mem);
     if (!has_parts_) primitives_a_ = allocate("primitives_a");
     for (cl::Buffer* buffer :
-         {&primitives_b_, &sparse_nodes_, &inner_rank_, &rank_sums_, &status_, &chunk_bounds_,
-          &chunk_bins_, &chunk_counts_, &chunks_, &tasks_, &first_chunk_, &children_, &order_, &heuristic_}) {
+         {&primitives_b_, &sparse_nodes_, &inner_rank_, &rank_sums_, &status_, &chunk_bounds_, &chunk_bins_,
+          &chunk_counts_, &chunks_, &tasks_, &first_chunk_, &children_, &order_, &heuristic_}) {
       *buffer = allocate(buffer->name);
     }
   }
@@ -84,10 +88,11 @@ class DeviceBuilder {
     context_.upload_values<std::uint32_t>(status_, initial);
     context_.fill(inner_rank_, 0);
     if (has_parts_) {
-      launch_groups("prepare", "bound_primitives", chunks, primitives_a_, chunk_bounds_, plan_.count, plan_.chunk_size);
+      launch_groups("prepare", "bound_primitives", chunks, primitives_a_, chunk_bounds_, plan_.count,
+                    plan_.chunk_size);
     } else {
-      launch_groups("prepare", "prepare_primitives", chunks, triangles_, primitives_a_, chunk_bounds_, status_,
-                    plan_.count, plan_.chunk_size);
+      launch_groups("prepare", "prepare_primitives", chunks, triangles_, primitives_a_, chunk_bounds_,
+                    status_, plan_.count, plan_.chunk_size);
     }
     const auto bounds =
         context_.download_values<GnBounds>(chunk_bounds_, 2 * static_cast<std::size_t>(chunks));
@@ -169,8 +174,7 @@ class DeviceBuilder {
   cl::StageTimes times_;
   std::uint32_t depth_ = 0;
   bool has_parts_ = false;
-  cl::Buffer primitives_a_, primitives_b_{{}, "primitives_b"},
-      sparse_nodes_{{}, "sparse_nodes"};
+  cl::Buffer primitives_a_, primitives_b_{{}, "primitives_b"}, sparse_nodes_{{}, "sparse_nodes"};
   cl::Buffer inner_rank_{{}, "inner_rank"}, rank_sums_{{}, "rank_sums"}, status_{{}, "status"};
   cl::Buffer chunk_bounds_{{}, "chunk_bounds"}, chunk_bins_{{}, "chunk_bins"},
       chunk_counts_{{}, "chunk_counts"};

@@ -1,7 +1,6 @@
 #include "gnomon/device/build_best.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "gnomon/cl/launch.h"
@@ -41,19 +40,21 @@ class PartMaker {
   Parts run() {
     Parts out{box_triangles(), count_, scene_};
     GnPlaneGrid grid = gn_plane_grid(scene_.lo, scene_.hi);
-    const cl::Buffer grid_buffer = context_.create_buffer("plane_grid", sizeof(GnPlaneGrid));
     const cl::Buffer wastes = context_.create_buffer("wastes", count_ * sizeof(std::uint16_t));
-    grid.floor = weigh(grid, grid_buffer, out.primitives, wastes);
+    grid.floor = weigh(grid, out.primitives, wastes);
     if (grid.floor == GN_NONE) return out;
+    const cl::Buffer grid_buffer = context_.create_buffer("plane_grid", sizeof(GnPlaneGrid));
     context_.upload_values<GnPlaneGrid>(grid_buffer, std::span(&grid, 1));
-    const cl::Buffer first = context_.create_buffer("first_parts", (count_ + std::size_t{1}) * sizeof(std::uint32_t));
-    launch("count_parts", runs(), run_group(), triangles_, out.primitives, grid_buffer, wastes, first, count_, run_);
+    const cl::Buffer first =
+        context_.create_buffer("first_parts", (count_ + std::size_t{1}) * sizeof(std::uint32_t));
+    launch("count_parts", runs(), run_group(), triangles_, out.primitives, grid_buffer, wastes, first, count_,
+           run_);
     const SortPlan sums = plan_sort(context_.device(), count_, plan_.work_group_size, 0);
     scan_values(context_, sums, first, count_, "parts", times_);
     out.count = context_.download_values<std::uint32_t>(first, 1, count_).front();
     cl::Buffer parts = context_.create_buffer("parts", out.count * sizeof(GnPrimitive));
-    launch("write_parts", runs(), run_group(), triangles_, out.primitives, grid_buffer, wastes, first, parts, count_,
-           run_);
+    launch("write_parts", runs(), run_group(), triangles_, out.primitives, grid_buffer, wastes, first, parts,
+           count_, run_);
     out.primitives = std::move(parts);
     return out;
   }
@@ -71,7 +72,8 @@ class PartMaker {
     const cl::Handle<cl_kernel> kernel =
         context_.programs().kernel({"prepare.cl", "parts.cl"}, plan_.program_options(), name);
     cl::set_arguments(kernel.get(), arguments...);
-    times_.add("parts", cl::enqueue(context_.queue(), kernel.get(), (items + local - 1) / local * local, local));
+    times_.add("parts",
+               cl::enqueue(context_.queue(), kernel.get(), (items + local - 1) / local * local, local));
   }
 
   // Every triangle's box, and the scene's.
@@ -81,8 +83,8 @@ class PartMaker {
     const cl::Buffer bounds = context_.create_buffer("bounds", 2 * std::size_t{chunks} * sizeof(GnBounds));
     const cl::Buffer first_bad = context_.create_buffer("first_bad", sizeof(std::uint32_t));
     context_.fill(first_bad, GN_NONE);
-    launch("prepare_primitives", chunks * plan_.work_group_size, plan_.work_group_size, triangles_, boxes, bounds,
-           first_bad, count_, plan_.chunk_size);
+    launch("prepare_primitives", chunks * plan_.work_group_size, plan_.work_group_size, triangles_, boxes,
+           bounds, first_bad, count_, plan_.chunk_size);
     const auto all = context_.download_values<GnBounds>(bounds, 2 * std::size_t{chunks});
     const std::uint32_t bad = context_.download_values<std::uint32_t>(first_bad, 1).front();
     if (bad != GN_NONE) throw_bad_coordinate(bad);
@@ -92,16 +94,11 @@ class PartMaker {
   }
 
   // The floor of what is divided.
-  std::uint32_t weigh(const GnPlaneGrid& grid, const cl::Buffer& grid_buffer, const cl::Buffer& boxes,
-                      const cl::Buffer& wastes) {
+  std::uint32_t weigh(const GnPlaneGrid& grid, const cl::Buffer& boxes, const cl::Buffer& wastes) {
     const cl::Buffer bins = context_.create_buffer("waste_bins", GN_WASTE_BINS * sizeof(std::uint32_t));
-    const cl::Buffer sums = context_.create_buffer("waste_sums", runs() * sizeof(std::uint64_t));
-    context_.upload_values<GnPlaneGrid>(grid_buffer, std::span(&grid, 1));
     context_.fill(bins, 0);
-    launch("weigh_waste", runs(), run_group(), triangles_, boxes, grid_buffer, wastes, bins, sums, count_, run_);
-    const auto parts = context_.download_values<std::uint64_t>(sums, runs());
-    return waste_floor(context_.download_values<std::uint32_t>(bins, GN_WASTE_BINS),
-                       std::accumulate(parts.begin(), parts.end(), std::uint64_t{0}), kPartBudget);
+    launch("weigh_waste", runs(), run_group(), triangles_, boxes, wastes, bins, count_, run_);
+    return waste_floor(context_.download_values<std::uint32_t>(bins, GN_WASTE_BINS), grid.units, kPartBudget);
   }
 
   const cl::Context& context_;
@@ -115,7 +112,8 @@ class PartMaker {
 
 }  // namespace
 
-std::vector<BufferNeed> best_memory(const cl::DeviceInfo& device, std::uint64_t count, const BuildOptions& options) {
+std::vector<BufferNeed> best_memory(const cl::DeviceInfo& device, std::uint64_t count,
+                                    const BuildOptions& options) {
   options.check();
   const std::uint64_t n = std::max<std::uint64_t>(1, count);
   const std::uint64_t parts = most_parts(n, kPartBudget);
@@ -124,7 +122,6 @@ std::vector<BufferNeed> best_memory(const cl::DeviceInfo& device, std::uint64_t 
       {"boxes", n * sizeof(GnPrimitive), true},
       {"wastes", n * sizeof(std::uint16_t), true},
       {"first_parts", (n + 1) * sizeof(std::uint32_t), true},
-      {"waste_sums", (n / kShortRun + 1) * sizeof(std::uint64_t), true},
   };
   for (BufferNeed need : plan_build(device, parts, options_over_parts(options)).buffers()) {
     if (need.name == "triangles") need.bytes = n * sizeof(Triangle);
@@ -138,8 +135,8 @@ std::vector<BufferNeed> best_memory(const cl::DeviceInfo& device, std::uint64_t 
   return needs;
 }
 
-DeviceBvh build_best(const cl::Context& context, cl_mem triangles, std::uint32_t count, const BuildOptions& options,
-                     BuildReport* out, const Progress& progress) {
+DeviceBvh build_best(const cl::Context& context, cl_mem triangles, std::uint32_t count,
+                     const BuildOptions& options, BuildReport* out, const Progress& progress) {
   const BuildOptions over_parts = options_over_parts(options);
   const BuildPlan plan = plan_build(context.device(), count, over_parts);
   report(progress, "build: parts", 0.0);
@@ -147,11 +144,11 @@ DeviceBvh build_best(const cl::Context& context, cl_mem triangles, std::uint32_t
   Parts parts = maker.run();
   BuildReport balanced;
   BuildReport optimised;
-  const DeviceBvh tree =
-      build_balanced(context, triangles, parts.count, std::move(parts.primitives), over_parts, &balanced, progress);
+  const DeviceBvh tree = build_balanced(context, triangles, parts.count, std::move(parts.primitives),
+                                        over_parts, &balanced, progress);
   report(progress, "build: optimise", 0.95);
-  DeviceBvh better =
-      optimise_device(context, tree, optimise_options(options, count, parts.scene.lo, parts.scene.hi), &optimised);
+  DeviceBvh better = optimise_device(
+      context, tree, optimise_options(options, count, parts.scene.lo, parts.scene.hi), &optimised);
   if (out != nullptr) {
     out->stages = maker.times().milliseconds();
     for (const BuildReport* more : {&balanced, &optimised})

@@ -37,12 +37,12 @@ class Optimiser {
   Optimiser(const cl::Context& context, const DeviceBvh& tree, const OptimiseOptions& options)
       : context_(context), tree_(tree), options_(options), nodes_(tree.node_count) {
     if (context.device().loop_limit != 0 || !context.device().is_cpu) slot_run_ = candidate_run_ = 1;
-    cl::Buffer* const all[] = {&slots_,      &above_,  &below_,  &tasks_,  &top_,   &numbers_, &bins_, &sums_,
-                               &candidates_, &length_, &gains_, &owners_, &moving_};
+    cl::Buffer* const all[] = {&slots_, &above_,      &below_,  &tasks_, &top_,    &numbers_, &bins_,
+                               &sums_,  &candidates_, &length_, &gains_, &owners_, &moving_,  &cost_bins_};
     std::size_t next = 0;
     for (const BufferNeed& need : optimise_memory(nodes_))
       *all[next++] = context.create_buffer(need.name, static_cast<std::size_t>(need.bytes));
-    launch("load", "load_slots", nodes_, tree.nodes, tree.order, slots_, above_, nodes_);
+    launch_light("load", "load_slots", nodes_, tree.nodes, tree.order, slots_, above_, nodes_);
   }
 
   DeviceBvh run() {
@@ -62,7 +62,8 @@ class Optimiser {
     join();
     const std::uint32_t chunks = runs_of(nodes_, slot_run_);
     context_.fill(bins_, 0);
-    launch("weigh", "weigh_slots", chunks, slots_, bins_, sums_, w(0), w(1), w(2), units_, nodes_, slot_run_);
+    launch("weigh", "weigh_slots", chunks, slots_, cost_bins_, bins_, sums_, w(0), w(1), w(2), units_, nodes_,
+           slot_run_);
     TreeWeight weight;
     weight.bins = context_.download_values<std::uint32_t>(bins_, GN_MEASURE_BINS);
     const auto parts = context_.download_values<std::uint64_t>(sums_, chunks);
@@ -73,23 +74,25 @@ class Optimiser {
 
   std::uint32_t move(std::uint32_t floor) {
     context_.fill(length_, 0);
-    launch("list", "list_candidates", runs_of(nodes_, slot_run_), slots_, candidates_, length_, w(0), w(1), w(2), floor,
+    launch("list", "list_candidates", runs_of(nodes_, slot_run_), cost_bins_, candidates_, length_, floor,
            nodes_, slot_run_);
     count_ = context_.download_values<std::uint32_t>(length_, 1).front();
     moves_ = context_.create_buffer("moves", count_ * sizeof(GnMove));
-    launch("search", "find_moves", runs_of(count_, candidate_run_), slots_, above_, candidates_, moves_, w(0), w(1),
-           w(2), count_, candidate_run_);
+    launch("search", "find_moves", runs_of(count_, candidate_run_), slots_, above_, candidates_, moves_, w(0),
+           w(1), w(2), count_, candidate_run_);
     for (const cl::Buffer* claims : {&gains_, &owners_, &moving_, &length_}) context_.fill(*claims, 0);
-    launch("settle", "bid_gains", count_, moves_, gains_, count_);
-    launch("settle", "bid_slots", count_, moves_, gains_, owners_, count_);
-    launch("settle", "enter_winners", count_, moves_, gains_, owners_, moving_, count_);
-    launch("settle", "give_way", count_, moves_, above_, moving_, length_, count_);
-    launch("move", "make_moves", count_, slots_, above_, moves_, count_);
+    launch_light("settle", "bid_gains", count_, moves_, gains_, count_);
+    launch_light("settle", "bid_slots", count_, moves_, gains_, owners_, count_);
+    launch_light("settle", "enter_winners", count_, moves_, gains_, owners_, moving_, count_);
+    launch_light("settle", "give_way", count_, moves_, above_, moving_, length_, count_);
+    launch_light("move", "make_moves", count_, slots_, above_, moves_, count_);
+    joined_ = false;
     return context_.download_values<std::uint32_t>(length_, 1).front();
   }
 
   void take_back() {
-    launch("move", "take_back", count_, slots_, above_, moves_, count_);
+    launch_light("move", "take_back", count_, slots_, above_, moves_, count_);
+    joined_ = false;
     join();
   }
 
@@ -100,20 +103,32 @@ class Optimiser {
 
   [[nodiscard]] float w(std::size_t axis) const { return options_.face_weights.at(axis); }
 
-  // One work-item per item; kernels ignore those past the end. On CPUs long work one to a group: PoCL gives each item of a
-  // group its own copy of a kernel's stack.
+  // One work-item per item; kernels ignore those past the end. On CPUs one to a group: PoCL gives each item
+  // of a group its own copy of a kernel's stack.
   template <typename... Arguments>
   void launch(const char* stage, const char* name, std::uint32_t items, const Arguments&... arguments) {
+    run("reinsert.cl", stage, name, items, context_.device().is_cpu ? 1 : widest(), arguments...);
+  }
+
+  // Items that do little and have no stack go in groups on CPUs too.
+  template <typename... Arguments>
+  void launch_light(const char* stage, const char* name, std::uint32_t items, const Arguments&... arguments) {
+    run("reinsert.cl", stage, name, items, widest(), arguments...);
+  }
+
+  [[nodiscard]] std::size_t widest() const {
+    return std::clamp<std::size_t>(context_.device().max_work_group, 1, 64);
+  }
+
+  template <typename... Arguments>
+  void run(const char* source, const char* stage, const char* name, std::uint32_t items, std::size_t group,
+           const Arguments&... arguments) {
     if (items == 0) return;
-    const std::string kernel_name = name;
-    const bool in_order = kernel_name.starts_with("write_");
-    const cl::Handle<cl_kernel> kernel =
-        context_.programs().kernel({in_order ? "renumber.cl" : "reinsert.cl"}, "-DGN_KIND=0u", name);
+    const cl::Handle<cl_kernel> kernel = context_.programs().kernel({source}, "-DGN_KIND=0u", name);
     cl::set_arguments(kernel.get(), arguments...);
-    const bool light = kernel_name == "load_slots" || std::string(stage) == "settle" || std::string(stage) == "move";
-    const std::size_t widest = std::clamp<std::uint64_t>(context_.device().max_work_group, 1, 64);
-    const std::size_t local = items == 1 || (context_.device().is_cpu && !light) ? 1 : widest;
-    times_.add(stage, cl::enqueue(context_.queue(), kernel.get(), (items + local - 1) / local * local, local));
+    const std::size_t local = items == 1 ? 1 : group;
+    times_.add(stage,
+               cl::enqueue(context_.queue(), kernel.get(), (items + local - 1) / local * local, local));
   }
 
   void read_cut() {
@@ -129,6 +144,7 @@ class Optimiser {
 
   // Boxes, sizes and heights from the leaves up.
   void join() {
+    if (joined_) return;
     launch("join", "cut_slots", 1, slots_, below_, inner_per_task(nodes_), tasks_, top_, numbers_);
     join_cut();
   }
@@ -137,6 +153,7 @@ class Optimiser {
     read_cut();
     launch("join", "join_subtrees", task_count_, slots_, above_, below_, tasks_, task_count_);
     launch("join", "join_top", 1, slots_, below_, top_, top_count_);
+    joined_ = true;
   }
 
   // What is below the root.
@@ -157,10 +174,11 @@ class Optimiser {
     out.order = context_.create_buffer("order", all.triangles * sizeof(std::uint32_t));
     out.leaf_triangles = context_.create_buffer("leaf_triangles", all.triangles * sizeof(GnLeafTriangle));
     const cl::Buffer places = context_.create_buffer("places", slots_of(nodes_) * 4 * sizeof(std::uint32_t));
-    launch("renumber", "write_top", 1, slots_, below_, tree_.order, tree_.leaf_triangles, out.nodes, out.order,
-           out.leaf_triangles, top_, places, top_count_);
-    launch("renumber", "write_subtrees", task_count_, slots_, below_, tree_.order, tree_.leaf_triangles, out.nodes,
-           out.order, out.leaf_triangles, tasks_, places, task_count_);
+    run("renumber.cl", "renumber", "write_top", 1, 1, slots_, below_, tree_.order, tree_.leaf_triangles,
+        out.nodes, out.order, out.leaf_triangles, top_, places, top_count_);
+    run("renumber.cl", "renumber", "write_subtrees", task_count_, context_.device().is_cpu ? 1 : widest(),
+        slots_, below_, tree_.order, tree_.leaf_triangles, out.nodes, out.order, out.leaf_triangles, tasks_,
+        places, task_count_);
     return out;
   }
 
@@ -174,9 +192,10 @@ class Optimiser {
   std::uint32_t top_count_ = 0;
   std::uint32_t count_ = 0;  // candidates of the last pass
   float units_ = 0.0F;
+  bool joined_ = false;  // boxes and sizes are those of the links
   cl::StageTimes times_;
-  cl::Buffer slots_, above_, below_, tasks_, top_, numbers_, bins_, sums_, candidates_, length_, gains_, owners_,
-      moving_, moves_;
+  cl::Buffer slots_, above_, below_, tasks_, top_, numbers_, bins_, sums_, candidates_, length_, gains_,
+      owners_, moving_, cost_bins_, moves_;
 };
 
 }  // namespace
@@ -198,14 +217,16 @@ std::vector<BufferNeed> optimise_memory(std::uint64_t nodes) {
       {"gains", slots * kWord, true},
       {"owners", slots * kWord, true},
       {"moving", slots * kWord, true},
+      {"slot_bins", slots * sizeof(std::uint16_t), true},
   };
 }
 
 void heed_optimise_limit(const cl::DeviceInfo& device, std::uint64_t nodes) {
   if (device.loop_limit == 0 || nodes * kTurnsPerNode <= device.loop_limit) return;
-  throw Error(ErrorCode::kInvalidArgument, device.name + " ends loops after " + std::to_string(device.loop_limit) +
-                                               " turns, too few to optimise a tree of " + std::to_string(nodes) +
-                                               " nodes; use builder balanced or another device");
+  throw Error(ErrorCode::kInvalidArgument,
+              device.name + " ends loops after " + std::to_string(device.loop_limit) +
+                  " turns, too few to optimise a tree of " + std::to_string(nodes) +
+                  " nodes; use builder balanced or another device");
 }
 
 DeviceBvh optimise_device(const cl::Context& context, const DeviceBvh& tree, const OptimiseOptions& options,
@@ -218,7 +239,8 @@ DeviceBvh optimise_device(const cl::Context& context, const DeviceBvh& tree, con
   DeviceBvh better = optimiser.run();
   if (out != nullptr) {
     for (auto& stage : optimiser.times().milliseconds()) out->stages.push_back(std::move(stage));
-    out->total_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    out->total_ms +=
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   }
   return better;
 }

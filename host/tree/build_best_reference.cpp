@@ -16,7 +16,8 @@ BuildOptions options_over_parts(const BuildOptions& options) {
 
 std::uint32_t most_depth_of_best(const BuildOptions& options, std::uint64_t triangles) {
   // Parts are fewer than twice as many: one level more than a balanced tree of the triangles.
-  return options.median_depth + static_cast<std::uint32_t>(std::bit_width(std::max<std::uint64_t>(1, triangles) - 1)) + 1;
+  return options.median_depth +
+         static_cast<std::uint32_t>(std::bit_width(std::max<std::uint64_t>(1, triangles) - 1)) + 1;
 }
 
 OptimiseOptions optimise_options(const BuildOptions& options, std::uint64_t triangles, const float lo[3],
@@ -33,7 +34,8 @@ Bvh build_best_reference(std::span<const GnTriangle> triangles, const BuildOptio
   if (triangles.empty()) return {};
   const BuildOptions over_parts = options_over_parts(options);
   const Bvh bvh = build_over_primitives(parts_of(triangles, kPartBudget), triangles, over_parts);
-  return optimise_reference(bvh, optimise_options(options, triangles.size(), bvh.nodes[0].lo, bvh.nodes[0].hi));
+  return optimise_reference(bvh,
+                            optimise_options(options, triangles.size(), bvh.nodes[0].lo, bvh.nodes[0].hi));
 }
 
 }  // namespace gnomon

@@ -38,7 +38,8 @@ bool has_parts(const BuildOptions& options) {
 }
 
 MaybeFault check_sizes(const Bvh& bvh, std::span<const GnTriangle> triangles, const BuildOptions& options) {
-  const std::uint64_t most = has_parts(options) ? most_parts(triangles.size(), kPartBudget) : triangles.size();
+  const std::uint64_t most =
+      has_parts(options) ? most_parts(triangles.size(), kPartBudget) : triangles.size();
   if (bvh.primitives.size() < triangles.size() || bvh.primitives.size() > most) {
     return fault("sizes: " + text(bvh.primitives.size()) + " primitives for " + text(triangles.size()) +
                  " triangles");
@@ -95,7 +96,8 @@ MaybeFault check_primitives(const Bvh& bvh, std::size_t triangles, const BuildOp
   }
   const auto lost = std::find(seen.begin(), seen.end(), 0);
   if (lost == seen.end()) return std::nullopt;
-  return fault("primitives: triangle " + text(static_cast<std::uint64_t>(lost - seen.begin())) + " is in no leaf");
+  return fault("primitives: triangle " + text(static_cast<std::uint64_t>(lost - seen.begin())) +
+               " is in no leaf");
 }
 
 // A triangle once in a leaf. The leaf ranges are known to be a partition.
@@ -107,7 +109,8 @@ MaybeFault check_repeats(const Bvh& bvh) {
                                     bvh.primitives.begin() + node.first + node.count);
     std::sort(held.begin(), held.end());
     const auto twice = std::adjacent_find(held.begin(), held.end());
-    if (twice != held.end()) return fault("primitives: a leaf holds triangle " + text(*twice) + " twice", index);
+    if (twice != held.end())
+      return fault("primitives: a leaf holds triangle " + text(*twice) + " twice", index);
   }
   return std::nullopt;
 }
@@ -234,7 +237,7 @@ MaybeFault check_numbering(const Bvh& bvh, const Walk& walk) {
 MaybeFault check_depth(const Bvh& bvh, const Walk& walk, std::size_t triangles, const BuildOptions& options) {
   const auto halvings =
       static_cast<std::uint32_t>(std::bit_width(bvh.primitives.size() - 1));  // ceil(log2(n))
-  const std::uint32_t limit = has_parts(options)             ? most_depth_of_best(options, triangles)
+  const std::uint32_t limit = has_parts(options)            ? most_depth_of_best(options, triangles)
                               : options.published_leaves.on ? options.published_leaves.max_depth + 1
                                                             : options.median_depth + halvings + 1;
   const auto deepest = std::max_element(walk.depth.begin(), walk.depth.end());

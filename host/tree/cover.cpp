@@ -87,7 +87,8 @@ void subtract(const Polygon& polygon, const Node& box, std::vector<Polygon>& pie
 bool boxes_cover(const GnTriangle& triangle, std::span<const Node> boxes) {
   double largest = 0.0;
   for (const float* corner : {triangle.v0, triangle.v1, triangle.v2}) {
-    if (std::none_of(boxes.begin(), boxes.end(), [&](const Node& box) { return holds(box, corner); })) return false;
+    if (std::none_of(boxes.begin(), boxes.end(), [&](const Node& box) { return holds(box, corner); }))
+      return false;
     for (int k = 0; k < 3; ++k) largest = std::max(largest, std::fabs(double{corner[k]}));
   }
   const auto holds_all = [&](const Node& box) {

@@ -1,5 +1,5 @@
-// Whether boxes hold all of a triangle between them, as the leaves must in which a triangle's parts are. In double
-// precision; not for builders. Feeds the checks of trees.
+// Whether boxes hold all of a triangle between them, as the leaves must in which a triangle's parts are. In
+// double precision; not for builders. Feeds the checks of trees.
 #pragma once
 
 #include <span>
@@ -20,7 +20,8 @@ class TriangleBoxes {
   std::vector<std::vector<Node>> boxes_;
 };
 
-// False where a strip of the triangle as wide as rounding to float makes one, or a corner, is in none of the boxes.
+// False where a strip of the triangle as wide as rounding to float makes one, or a corner, is in none of the
+// boxes.
 [[nodiscard]] bool boxes_cover(const GnTriangle& triangle, std::span<const Node> boxes);
 
 }  // namespace gnomon

@@ -137,7 +137,8 @@ class Optimiser {
       }
       const GnBelow l = below_of(left);
       const GnBelow r = below_of(right);
-      below_[node.first / 2] = {l.inner + r.inner + 1, l.triangles + r.triangles, std::max(l.height, r.height) + 1, 0};
+      below_[node.first / 2] = {l.inner + r.inner + 1, l.triangles + r.triangles,
+                                std::max(l.height, r.height) + 1, 0};
     }
   }
 
@@ -237,9 +238,9 @@ void OptimiseOptions::check() const {
 
 void require_depth(std::uint32_t depth) {
   if (depth <= GN_MOST_DEPTH) return;
-  throw Error(ErrorCode::kInvalidArgument, "a tree " + std::to_string(depth) +
-                                               " levels deep cannot be optimised: at most " +
-                                               std::to_string(GN_MOST_DEPTH) + "; build one that is halved sooner");
+  throw Error(ErrorCode::kInvalidArgument,
+              "a tree " + std::to_string(depth) + " levels deep cannot be optimised: at most " +
+                  std::to_string(GN_MOST_DEPTH) + "; build one that is halved sooner");
 }
 
 std::uint32_t candidate_floor(std::span<const std::uint32_t> bins, float share) {
@@ -248,7 +249,8 @@ std::uint32_t candidate_floor(std::span<const std::uint32_t> bins, float share) 
   const double most = static_cast<double>(share) * static_cast<double>(nodes);
   std::uint64_t taken = 0;
   auto floor = static_cast<std::uint32_t>(bins.size());
-  while (floor > 0 && (taken == 0 || static_cast<double>(taken + bins[floor - 1]) <= most)) taken += bins[--floor];
+  while (floor > 0 && (taken == 0 || static_cast<double>(taken + bins[floor - 1]) <= most))
+    taken += bins[--floor];
   return floor;
 }
 

@@ -1,6 +1,6 @@
-// Improving a finished binary tree by moving subtrees to where they cost less (host/notes/best-builder.md), in plain C++:
-// what the device's optimiser (optimise_device.h) is tested against, bit for bit. Feeds the best builder's reference,
-// tests and tools.
+// Improving a finished binary tree by moving subtrees to where they cost less (host/notes/best-builder.md),
+// in plain C++: what the device's optimiser (optimise_device.h) is tested against, bit for bit. Feeds the
+// best builder's reference, tests and tools.
 #pragma once
 
 #include <array>
@@ -16,18 +16,20 @@ struct OptimiseOptions {
   // What boxes cost: w . (dy dz, dx dz, dx dy). 1 each is surface area (SAH); |n| are parallel rays along n
   // (PAH), and mixtures of both are other weights (kernels/shared/measure_math.h). >= 0, finite.
   std::array<float, 3> face_weights{1.0F, 1.0F, 1.0F};
-  std::uint32_t max_passes = 3;  // 0..64
-  float share = 0.1F;            // of the nodes, the most costly ones, that a pass tries to move; (0, 1]
+  std::uint32_t max_passes = 6;  // 0..64
+  float share = 0.05F;           // of the nodes, the most costly ones, that a pass tries to move; (0, 1]
   float least_gain = 0.01F;      // passes end when one saves less than this share of the cost; [0, 1)
-  std::uint32_t max_depth = 96;  // a pass that makes the tree deeper than this and than it was is taken back; 1..128
+  std::uint32_t max_depth =
+      96;  // a pass that makes the tree deeper than this and than it was is taken back; 1..128
 
   // Throws Error{kInvalidArgument} naming the option, its value and its range.
   void check() const;
 };
 
-// The tree with its inner nodes' cost brought down by parallel reinsertion (Meister, Bittner 2018): leaves stay, what is
-// above them changes, and a triangle that one leaf holds twice is held once. Numbered as builders number. Any boxes will
-// do: leaves' are kept. Throws Error: kInvalidArgument (options; a tree deeper than 128).
+// The tree with its inner nodes' cost brought down by parallel reinsertion (Meister, Bittner 2018): leaves
+// stay, what is above them changes, and a triangle that one leaf holds twice is held once. Numbered as
+// builders number. Any boxes will do: leaves' are kept. Throws Error: kInvalidArgument (options; a tree
+// deeper than 128).
 [[nodiscard]] Bvh optimise_reference(const Bvh& bvh, const OptimiseOptions& options = {});
 
 // Throws Error{kInvalidArgument} for a tree deeper than the search's stacks can follow.
@@ -46,8 +48,9 @@ struct TreeWeight {
 // Factor from a cost to units; 0 for a tree that is too small or flat to be measured, which is left as it is.
 [[nodiscard]] float units_of(float root_cost);
 
-// The passes, the same decisions for device and reference. Steps: weigh() -> TreeWeight of the tree as it is now;
-// move(floor) tries to move nodes that cost as much and returns how many it moved; take_back() undoes the last move.
+// The passes, the same decisions for device and reference. Steps: weigh() -> TreeWeight of the tree as it is
+// now; move(floor) tries to move nodes that cost as much and returns how many it moved; take_back() undoes
+// the last move.
 template <typename Steps>
 void run_passes(Steps& steps, const OptimiseOptions& options) {
   TreeWeight before = steps.weigh();

@@ -30,8 +30,9 @@ GnPlaneGrid grid_of(const std::vector<GnPrimitive>& boxes) {
   return gn_plane_grid(lo, hi);
 }
 
-// Dividing pays where boxes waste much beside the scene's own: below this many of it, all together, none is divided.
-constexpr std::uint64_t kLeastWaste = std::uint64_t{1} << 40U;
+// A triangle is divided only where its box wastes so many times the scene's box over n^(2/3), about the side
+// of a cell when n of them fill the scene. Below that a part costs what it saves.
+constexpr double kLeastWaste = 0.64;
 
 // As many primitives as builders index.
 constexpr std::uint64_t kMostIndices = 0x7fffffff;
@@ -39,32 +40,38 @@ constexpr std::uint64_t kMostIndices = 0x7fffffff;
 }  // namespace
 
 std::uint64_t most_parts(std::uint64_t triangles, float budget) {
-  const auto most = triangles + static_cast<std::uint64_t>(static_cast<double>(budget) * static_cast<double>(triangles));
+  const auto most =
+      triangles + static_cast<std::uint64_t>(static_cast<double>(budget) * static_cast<double>(triangles));
   return std::max(triangles, std::min(most, kMostIndices));
 }
 
-std::uint32_t waste_floor(std::span<const std::uint32_t> bins, std::uint64_t waste, float budget) {
+std::uint32_t waste_floor(std::span<const std::uint32_t> bins, float units, float budget) {
   std::uint64_t triangles = 0;
   for (const std::uint32_t count : bins) triangles += count;
   const std::uint64_t most = most_parts(triangles, budget) - triangles;
-  if (waste < kLeastWaste || most == 0) return GN_NONE;
+  if (most == 0 || !(units > 0.0F)) return GN_NONE;
   const auto splits_from = [&](std::uint32_t floor) {
     std::uint64_t splits = 0;
     for (std::uint32_t bin = floor; bin < bins.size(); ++bin)
       splits += std::uint64_t{bins[bin]} * gn_splits_of(bin, floor);
     return splits;
   };
+  const auto too_little = [&](std::uint32_t bin) {
+    const auto n = static_cast<double>(triangles);
+    const double share = static_cast<double>(gn_float_of(bin << GN_WASTE_SHIFT)) * static_cast<double>(units);
+    return share * share * share * n * n < kLeastWaste * kLeastWaste * kLeastWaste;
+  };
   // More are divided, and more often, the lower the floor is.
   std::uint32_t low = 1;
   auto high = static_cast<std::uint32_t>(bins.size());
   while (low < high) {
     const std::uint32_t middle = (low + high) / 2;
-    if (splits_from(middle) <= most)
-      high = middle;
-    else
+    if (too_little(middle) || splits_from(middle) > most)
       low = middle + 1;
+    else
+      high = middle;
   }
-  return high == bins.size() ? GN_NONE : high;
+  return splits_from(high) == 0 ? GN_NONE : high;
 }
 
 std::vector<GnPrimitive> parts_of(std::span<const GnTriangle> triangles, float budget) {
@@ -75,15 +82,13 @@ std::vector<GnPrimitive> parts_of(std::span<const GnTriangle> triangles, float b
   GnPlaneGrid grid = grid_of(boxes);
   std::vector<std::uint32_t> bins(GN_WASTE_BINS);
   std::vector<std::uint32_t> bin_of;
-  std::uint64_t waste = 0;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     const GnCut cut = cut_of(triangles[i]);
     const float area = gn_wasted_area(&cut, boxes[i].lo, boxes[i].hi);
     bin_of.push_back(gn_waste_bin(area));
     bins[bin_of.back()] += 1;
-    waste += static_cast<std::uint64_t>(area * grid.units);
   }
-  grid.floor = waste_floor(bins, waste, budget);
+  grid.floor = waste_floor(bins, grid.units, budget);
   if (grid.floor == GN_NONE) return boxes;
   std::vector<GnPrimitive> out;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {

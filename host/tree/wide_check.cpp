@@ -220,7 +220,8 @@ class Check {
 
 }  // namespace
 
-std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles, Repeats repeats) {
+std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles,
+                                   Repeats repeats) {
   return Check(wide, triangles, repeats).run();
 }
 

@@ -12,7 +12,7 @@
 #define GN_MOST_PARTS 32u
 // Planes halve the scene's longest side so many times.
 #define GN_PLANE_BITS 20u
-// Wasted areas are counted in bins of an eighth of a power of two, and added up in shares of the scene's box.
+// Wasted areas are counted in bins of an eighth of a power of two.
 #define GN_WASTE_BINS 2048u
 #define GN_WASTE_SHIFT 20
 // Of the coordinates that a clipped edge lies between: what rounding may have moved its end by.
@@ -23,7 +23,7 @@ typedef struct GnPlaneGrid {
   gn_f32 lo[3];
   gn_f32 scale;  // cells per unit; 0: no planes
   gn_f32 cell;   // side of a cell
-  gn_f32 units;  // factor from an area to shares of the scene's: 2^40 is all of it
+  gn_f32 units;  // factor from an area to a share of the scene's; 0: too small or large a scene to tell
   gn_u32 floor;  // bin of the least wasted area that is divided; GN_NONE: none is
   gn_u32 pad;
 } GnPlaneGrid;
@@ -50,7 +50,7 @@ GN_INLINE GnPlaneGrid gn_plane_grid(const gn_f32* lo, const gn_f32* hi) {
   for (k = 0; k < 3; ++k) grid.lo[k] = lo[k];
   grid.scale = area > 1e-24f && area < 1e38f ? gn_bin_scale(0.0f, extent, 1u << GN_PLANE_BITS) : 0.0f;
   grid.cell = extent * (1.0f / (gn_f32)(1u << GN_PLANE_BITS));
-  grid.units = area > 1e-24f && area < 1e38f ? 1099511627776.0f * gn_reciprocal(area) : 0.0f;
+  grid.units = area > 1e-24f && area < 1e38f ? gn_reciprocal(area) : 0.0f;
   grid.floor = GN_NONE;
   grid.pad = 0u;
   return grid;
@@ -71,15 +71,16 @@ GN_INLINE gn_f32 gn_wasted_area(const GnCut* t, const gn_f32* lo, const gn_f32* 
 
 GN_INLINE gn_u32 gn_waste_bin(gn_f32 waste) { return gn_bits_of(waste) >> GN_WASTE_SHIFT; }
 
-// Times a triangle is divided whose wasted area is in `bin`, when those from `floor` on are: as the cube root of how much
-// it is more.
+// Times a triangle is divided whose wasted area is in `bin`, when those from `floor` on are: as the square root of how
+// much it is more. s parts of a long triangle waste an s-th of what it wasted, so each next part then saves as much
+// whichever triangle it is of.
 GN_INLINE gn_u32 gn_splits_of(gn_u32 bin, gn_u32 floor) {
   const gn_f32 waste = gn_float_of(bin << GN_WASTE_SHIFT), least = gn_float_of(floor << GN_WASTE_SHIFT);
   gn_u32 splits = 0u;
   if (bin < floor) return 0u;
   while (splits < GN_MOST_PARTS - 1u) {
     const gn_f32 next = (gn_f32)(splits + 1u);
-    if (!(next * next * next * least <= waste)) return splits;
+    if (!(next * next * least <= waste)) return splits;
     splits += 1u;
   }
   return splits;

@@ -29,13 +29,15 @@ OptimiseOptions every_node(std::uint32_t passes = 20) {
 // Demands the reference's bytes and returns how they differ from the tree before.
 bool require_same(const Triangles& triangles, const BuildOptions& build, const OptimiseOptions& options) {
   const Bvh before = gnomon::build_reference(triangles, build);
-  const auto tree = gnomon::optimise_device(context(), gnomon::upload_bvh(context(), before, triangles), options);
+  const auto tree =
+      gnomon::optimise_device(context(), gnomon::upload_bvh(context(), before, triangles), options);
   const Bvh expected = gnomon::optimise_reference(before, options);
   const Bvh device = gnomon::download_bvh(context(), tree);
   REQUIRE(device.primitives == expected.primitives);
   REQUIRE(tree_hash(device) == tree_hash(expected));
   REQUIRE(tree.max_depth == gnomon::stats_of(expected, build).max_depth);
-  const auto corners = context().download_values<GnLeafTriangle>(tree.leaf_triangles, device.primitives.size());
+  const auto corners =
+      context().download_values<GnLeafTriangle>(tree.leaf_triangles, device.primitives.size());
   for (std::size_t i = 0; i < corners.size(); ++i) {
     CAPTURE(i);
     REQUIRE(corners[i].primitive == device.primitives[i]);
@@ -93,10 +95,12 @@ TEST_CASE("optimising small trees keeps to its buffers", "[memcheck][optimise]")
   require_same(gnomon::test::soup(1, 218), {}, every_node());
 }
 
-TEST_CASE("a leaf's copies of a triangle go, on the device as in the reference", "[portable][memcheck][optimise]") {
+TEST_CASE("a leaf's copies of a triangle go, on the device as in the reference",
+          "[portable][memcheck][optimise]") {
   const Triangles triangles = gnomon::test::soup(6, 219);
   Bvh before;
-  before.nodes = {{{0, 0, 0}, 1, {12, 1, 1}, 0}, {{0, 0, 0}, 0, {1, 1, 1}, 4}, {{11, 0, 0}, 4, {12, 1, 1}, 3}};
+  before.nodes = {
+      {{0, 0, 0}, 1, {12, 1, 1}, 0}, {{0, 0, 0}, 0, {1, 1, 1}, 4}, {{11, 0, 0}, 4, {12, 1, 1}, 3}};
   before.primitives = {5, 3, 5, 5, 3, 3, 4};
   const auto tree = gnomon::optimise_device(context(), gnomon::upload_bvh(context(), before, triangles));
   REQUIRE(tree.triangle_count == 4);

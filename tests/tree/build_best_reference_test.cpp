@@ -1,4 +1,5 @@
-// The best builder's reference: sound trees of every awkward input, better than balanced ones, and what it refuses.
+// The best builder's reference: sound trees of every awkward input, better than balanced ones, and what it
+// refuses.
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -38,8 +38,9 @@ GnNode box_at(float x, std::uint32_t first, std::uint32_t count) {
 // A tree of four unit boxes in a row whose pairs are crossed: at 0 and 10, at 1 and 11.
 Bvh crossed() {
   Bvh bvh;
-  bvh.nodes = {{{0, 0, 0}, 3, {12, 1, 1}, 0}, box_at(0, 0, 1),  box_at(10, 1, 1), {{0, 0, 0}, 1, {11, 1, 1}, 0},
-               {{1, 0, 0}, 5, {12, 1, 1}, 0}, box_at(1, 2, 1), box_at(11, 3, 1)};
+  bvh.nodes = {
+      {{0, 0, 0}, 3, {12, 1, 1}, 0}, box_at(0, 0, 1), box_at(10, 1, 1), {{0, 0, 0}, 1, {11, 1, 1}, 0},
+      {{1, 0, 0}, 5, {12, 1, 1}, 0}, box_at(1, 2, 1), box_at(11, 3, 1)};
   bvh.primitives = {0, 1, 2, 3};
   return bvh;
 }

@@ -86,7 +86,7 @@ TEST_CASE("a diagonal triangle's parts are a fraction of its box") {
     sum += half_area(box_of(part));
     count += 1;
   }
-  REQUIRE(count > 20);
+  REQUIRE(count > 10);
   REQUIRE(count <= GN_MOST_PARTS);
   REQUIRE(sum < 0.15 * 300.0);
 }
@@ -104,28 +104,30 @@ TEST_CASE("walls along the axes waste nothing but their halves, and small triang
   REQUIRE(*std::max_element(count.begin(), count.end()) > 3);
 }
 
-TEST_CASE("more is divided the lower the floor, as the cube root of what boxes waste") {
+TEST_CASE("more is divided the lower the floor, as the square root of what boxes waste") {
   const std::uint32_t floor = gn_waste_bin(1.0F);
   REQUIRE(gn_splits_of(floor - 1, floor) == 0);
   REQUIRE(gn_splits_of(floor, floor) == 1);
-  REQUIRE(gn_splits_of(gn_waste_bin(8.0F), floor) == 2);
-  REQUIRE(gn_splits_of(gn_waste_bin(28.0F), floor) == 3);
+  REQUIRE(gn_splits_of(gn_waste_bin(4.0F), floor) == 2);
+  REQUIRE(gn_splits_of(gn_waste_bin(9.0F), floor) == 3);
   REQUIRE(gn_splits_of(gn_waste_bin(1e6F), floor) == GN_MOST_PARTS - 1);
   REQUIRE(gn_splits_of(gn_waste_bin(1e6F), GN_NONE) == 0);
 }
 
-TEST_CASE("the floor keeps to the budget and to scenes where dividing pays") {
-  constexpr std::uint64_t kMuch = std::uint64_t{100} << 40U;
+TEST_CASE("the floor keeps to the budget and to triangles that it pays to divide") {
   std::vector<std::uint32_t> bins(GN_WASTE_BINS);
   bins[gn_waste_bin(1.0F)] = 900;
   bins[gn_waste_bin(64.0F)] = 100;
   // 0.3 of 1000: four splits each of the hundred are 400, three 300.
-  const std::uint32_t floor = gnomon::waste_floor(bins, kMuch, 0.3F);
+  const std::uint32_t floor = gnomon::waste_floor(bins, 1.0F, 0.3F);
   REQUIRE(floor > gn_waste_bin(1.0F));
   REQUIRE(100 * gn_splits_of(gn_waste_bin(64.0F), floor) <= 300);
   REQUIRE(100 * gn_splits_of(gn_waste_bin(64.0F), floor - 1) > 300);
-  REQUIRE(gnomon::waste_floor(bins, kMuch, 0.0F) == GN_NONE);
-  REQUIRE(gnomon::waste_floor(bins, 0, 0.3F) == GN_NONE);
+  REQUIRE(gnomon::waste_floor(bins, 1.0F, 0.0F) == GN_NONE);
+  REQUIRE(gnomon::waste_floor(bins, 0.0F, 0.3F) == GN_NONE);
+  // Of a thousand triangles those that waste 0.0064 of the scene.
+  REQUIRE(gnomon::waste_floor(bins, 0.001F / 64.0F, 0.3F) == GN_NONE);
+  REQUIRE(gnomon::waste_floor(bins, 0.01F / 64.0F, 0.3F) == gn_waste_bin(44.0F));
 }
 
 TEST_CASE("where an edge passes a plane is bounded for certain") {
@@ -145,7 +147,8 @@ TEST_CASE("where an edge passes a plane is bounded for certain") {
     float lo[3];
     float hi[3];
     gn_edge_at(a, b, 0, plane, lo, hi);
-    const long double share = (static_cast<long double>(plane) - a[0]) / (static_cast<long double>(b[0]) - a[0]);
+    const long double share =
+        (static_cast<long double>(plane) - a[0]) / (static_cast<long double>(b[0]) - a[0]);
     for (int k = 0; k < 3; ++k) {
       const long double at = a[k] + share * (static_cast<long double>(b[k]) - a[k]);
       REQUIRE(static_cast<long double>(lo[k]) <= at + (k == 0 ? 1e-18L * scale : 0.0L) + 1e-18L * fabsl(at));

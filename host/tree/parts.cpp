@@ -31,7 +31,8 @@ GnPlaneGrid grid_of(const std::vector<GnPrimitive>& boxes) {
 }
 
 // A triangle is divided only where its box wastes so many times the scene's box over n^(2/3), about the side
-// of a cell when n of them fill the scene. Below that a part costs what it saves.
+// of a cell when n of them fill the scene, and triangles only where the mean one does. Below that parts cost
+// what they save: a block tests eight triangles at once, however large they are.
 constexpr double kLeastWaste = 0.64;
 
 // As many primitives as builders index.
@@ -56,17 +57,24 @@ std::uint32_t waste_floor(std::span<const std::uint32_t> bins, float units, floa
       splits += std::uint64_t{bins[bin]} * gn_splits_of(bin, floor);
     return splits;
   };
-  const auto too_little = [&](std::uint32_t bin) {
-    const auto n = static_cast<double>(triangles);
-    const double share = static_cast<double>(gn_float_of(bin << GN_WASTE_SHIFT)) * static_cast<double>(units);
+  const auto n = static_cast<double>(triangles);
+  const auto share_of = [&](std::uint32_t bin) {
+    return static_cast<double>(gn_float_of(bin << GN_WASTE_SHIFT)) * static_cast<double>(units);
+  };
+  const auto too_little = [&](double share) {
     return share * share * share * n * n < kLeastWaste * kLeastWaste * kLeastWaste;
   };
+  double all = 0.0;
+  for (std::uint32_t bin = 0; bin < bins.size(); ++bin) {
+    if (bins[bin] > 0) all += bins[bin] * share_of(bin);
+  }
+  if (too_little(all / n)) return GN_NONE;
   // More are divided, and more often, the lower the floor is.
   std::uint32_t low = 1;
   auto high = static_cast<std::uint32_t>(bins.size());
   while (low < high) {
     const std::uint32_t middle = (low + high) / 2;
-    if (too_little(middle) || splits_from(middle) > most)
+    if (too_little(share_of(middle)) || splits_from(middle) > most)
       low = middle + 1;
     else
       high = middle;

@@ -47,7 +47,7 @@ TEST_CASE("both flavours build the best reference's tree from every awkward inpu
 }
 
 TEST_CASE("both flavours divide the same triangles", "[portable][best]") {
-  const Triangles triangles = with_large_ones(1500, 40, 231);
+  const Triangles triangles = with_large_ones(1500, 250, 231);
   require_same(triangles, best(1));
   require_same(triangles, best(16, 100));
   const auto tree = gnomon::build_device(context(), triangles, best(0));
@@ -56,7 +56,7 @@ TEST_CASE("both flavours divide the same triangles", "[portable][best]") {
 
 // Few triangles: the simulator that watches every access takes its time.
 TEST_CASE("small best trees in both flavours keep to their buffers", "[memcheck][best]") {
-  const Triangles triangles = with_large_ones(130, 4, 232);
+  const Triangles triangles = with_large_ones(60, 110, 232);
   REQUIRE(gnomon::build_reference(triangles, best(1)).primitives.size() > triangles.size());
   require_same(triangles, best(1, 64));
   require_same(triangles, best(8, 64));
@@ -64,7 +64,7 @@ TEST_CASE("small best trees in both flavours keep to their buffers", "[memcheck]
 }
 
 TEST_CASE("the best tree does not depend on how the work is cut", "[unlimited][best]") {
-  const Triangles triangles = with_large_ones(30000, 300, 235);
+  const Triangles triangles = with_large_ones(30000, 800, 235);
   const std::string expected = gnomon::tree_hash(gnomon::build_reference(triangles, best(1)));
   for (const BuildOptions& options : {best(0), best(1, 64), best(16, 4096), best(64)}) {
     CAPTURE(options.work_group_size, options.chunk_size);
@@ -75,7 +75,7 @@ TEST_CASE("the best tree does not depend on how the work is cut", "[unlimited][b
 
 TEST_CASE("leaf size, costs, bins and measures mean the same on the device for best trees",
           "[unlimited][best]") {
-  const Triangles triangles = with_large_ones(3000, 60, 236);
+  const Triangles triangles = with_large_ones(3000, 400, 236);
   for (const std::uint32_t leaf : {1U, 4U, 255U}) {
     for (const float triangle_cost : {0.25F, 1.0F}) {
       CAPTURE(leaf, triangle_cost);
@@ -90,7 +90,7 @@ TEST_CASE("leaf size, costs, bins and measures mean the same on the device for b
 }
 
 TEST_CASE("rays through best trees hit what the oracle hits, in every flavour", "[portable][best]") {
-  const Triangles triangles = with_large_ones(1200, 60, 237);
+  const Triangles triangles = with_large_ones(1200, 250, 237);
   const auto rays = gnomon::test::random_rays(400, 238);
   const auto tree = gnomon::build_device(context(), triangles, best(0));
   REQUIRE(tree.triangle_count > triangles.size());
@@ -122,7 +122,7 @@ TEST_CASE("rays through best trees hit what the oracle hits, in every flavour", 
 }
 
 TEST_CASE("a best tree becomes a sound wide tree", "[unlimited][best]") {
-  const Triangles triangles = with_large_ones(3000, 60, 239);
+  const Triangles triangles = with_large_ones(3000, 400, 239);
   const auto tree = gnomon::build_device(context(), triangles, best(0));
   const auto wide = gnomon::download_wide(context(), gnomon::collapse_device(context(), tree));
   if (const auto fault = gnomon::check_wide(wide, triangles, gnomon::Repeats::kAllowed)) FAIL(fault->what);
@@ -131,14 +131,14 @@ TEST_CASE("a best tree becomes a sound wide tree", "[unlimited][best]") {
 }
 
 TEST_CASE("a tree of parts is not refitted", "[best]") {
-  const Triangles triangles = with_large_ones(1000, 40, 240);
+  const Triangles triangles = with_large_ones(1000, 250, 240);
   auto tree = gnomon::build_device(context(), triangles, best(0));
   REQUIRE_THROWS_WITH(gnomon::refit_device(context(), tree, triangles),
                       Catch::Contains("cannot be refitted"));
 }
 
 TEST_CASE("a best build reports its stages and a memory query that holds", "[best]") {
-  const Triangles triangles = with_large_ones(3000, 30, 241);
+  const Triangles triangles = with_large_ones(3000, 400, 241);
   gnomon::BuildReport report;
   const auto tree = gnomon::build_device(context(), triangles, best(0), &report);
   REQUIRE(report.total_ms > 0.0);

@@ -49,7 +49,7 @@ TEST_CASE("the best builder makes sound trees of every awkward input, whatever l
 
 TEST_CASE("best trees of scenes with large triangles name some of them in several leaves, and cost less") {
   Triangles triangles = gnomon::test::soup(3000, 310, 0.1F);
-  const Triangles large = gnomon::test::soup(60, 311, 5.0F);
+  const Triangles large = gnomon::test::soup(300, 311, 5.0F);
   triangles.insert(triangles.end(), large.begin(), large.end());
   const Bvh bvh = require_sound(triangles, best());
   REQUIRE(bvh.primitives.size() > triangles.size());
@@ -59,7 +59,7 @@ TEST_CASE("best trees of scenes with large triangles name some of them in severa
 
 TEST_CASE("the reference's best trees give the oracle's hits") {
   Triangles triangles = gnomon::test::soup(400, 312, 0.3F);
-  const Triangles large = gnomon::test::soup(40, 313, 5.0F);
+  const Triangles large = gnomon::test::soup(150, 313, 5.0F);
   triangles.insert(triangles.end(), large.begin(), large.end());
   const Bvh bvh = require_sound(triangles, best());
   std::size_t found = 0;
@@ -123,7 +123,7 @@ TEST_CASE("the best builder refuses bad coordinates with the first triangle's nu
 
 TEST_CASE("checks of best trees still tell good from bad") {
   Triangles triangles = gnomon::test::soup(600, 317, 0.1F);
-  const Triangles large = gnomon::test::soup(30, 318, 5.0F);
+  const Triangles large = gnomon::test::soup(150, 318, 5.0F);
   triangles.insert(triangles.end(), large.begin(), large.end());
   const Bvh good = require_sound(triangles, best());
   const auto require_fault = [&](const Bvh& bvh, const std::string& word) {
@@ -144,7 +144,7 @@ TEST_CASE("checks of best trees still tell good from bad") {
   for (std::size_t i = 0; i + 1 < good.primitives.size() && !planted; ++i) {
     if (times[good.primitives[i]] < 3) continue;
     bad = good;
-    bad.primitives[i] = bad.primitives[i] + 1 < 630 ? bad.primitives[i] + 1 : 600;
+    bad.primitives[i] = bad.primitives[i] + 1 < 750 ? bad.primitives[i] + 1 : 600;
     planted = gnomon::check_bvh(bad, triangles, best()).has_value();
   }
   REQUIRE(planted);
@@ -153,7 +153,7 @@ TEST_CASE("checks of best trees still tell good from bad") {
   REQUIRE_FALSE(gnomon::check_wide(wide, triangles, gnomon::Repeats::kAllowed));
   const std::uint32_t doomed = wide.blocks[0].primitives[0];
   for (auto& block : wide.blocks) {
-    for (std::uint32_t& p : block.primitives) p = p == doomed && doomed != GN_NONE ? (doomed + 1) % 630 : p;
+    for (std::uint32_t& p : block.primitives) p = p == doomed && doomed != GN_NONE ? (doomed + 1) % 750 : p;
   }
   REQUIRE(gnomon::check_wide(wide, triangles, gnomon::Repeats::kAllowed));
 }

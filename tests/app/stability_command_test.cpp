@@ -107,7 +107,7 @@ TEST_CASE("a long run gives one row that says all about it, appended to a file")
   CHECK(row.at("lost") == 0);
   CHECK(row.at("false_hits") == 0);
   CHECK(row.at("flavours_differ") == 0);
-  CHECK(row.at("parts").size() == 6);  // three offsets, two builders
+  CHECK(row.at("parts").size() == 9);  // three offsets, three builders
   std::uint64_t hits = 0;
   for (const json& step : row.at("t_error_steps")) hits += step[1].get<std::uint64_t>();
   CHECK(hits == row.at("hits"));

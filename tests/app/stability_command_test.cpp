@@ -90,7 +90,7 @@ TEST_CASE("a long run gives one row that says all about it, appended to a file")
   const Folder folder;
   const std::string file = folder.file("rows.jsonl");
   for (int i = 0; i < 2; ++i) {
-    const auto outcome = run({"stability", "gen:random:2000", "--rays", "30000", "--rows", file, "--json"});
+    const auto outcome = run({"stability", "gen:random:2000", "--rays", "36000", "--rows", file, "--json"});
     CAPTURE(outcome.out, outcome.err);
     REQUIRE(outcome.status == 0);
     REQUIRE(json::parse(outcome.out).at("rows").size() == 1);
@@ -98,7 +98,7 @@ TEST_CASE("a long run gives one row that says all about it, appended to a file")
   const std::vector<json> rows = lines_of(file);
   REQUIRE(rows.size() == 2);
   const json& row = rows[0];
-  CHECK(row.at("rays") == 30000);
+  CHECK(row.at("rays") == 36000);
   CHECK(row.at("kind") == "soak");
   CHECK(row.at("stopped") == false);
   CHECK(row.at("at_corners").get<int>() > 7000);

@@ -16,6 +16,7 @@
 #include "gnomon/device/build_device.h"
 #include "gnomon/device/find_areas.h"
 #include "gnomon/device/forest.h"
+#include "gnomon/device/optimise_device.h"
 #include "gnomon/device/trace_areas.h"
 #include "gnomon/device/trace_device.h"
 #include "gnomon/scene/generators.h"

@@ -9,6 +9,12 @@
 static GN_OUT_OF_LINE void decide(GnPacket* p, __global const float8* rays, __global const GnTriangleBlock* blocks,
                                   uint index, uint place, int verdict) {
   const uint g = index >> 4, bit = 1u << (index & 15u);
+  if (p->found[g] & bit) {  // trees of parts have a triangle in several leaves, and it is not nearer there
+    const uint other = ((const uint*)p->place)[index];
+    const uint nearest =
+        p->pending[g] & bit ? blocks[other >> 3].primitives[other & 7u] : p->best[index].primitive;
+    if (nearest == blocks[place >> 3].primitives[place & 7u]) return;
+  }
   const GnRay ray = load_ray(rays, p->first + index);
   const GnRayFrame frame = gn_ray_frame(&ray);
   float* nearest = (float*)p->nearest + index;

@@ -36,3 +36,28 @@ __kernel void prepare_primitives(__global const float* triangles, __global float
     store_bounds(bounds + 2u * chunk + 1u, centroids);
   }
 }
+
+// The same of primitives that are there already: parts of triangles.
+__kernel void bound_primitives(__global const float8* primitives, __global GnBounds* bounds, uint count,
+                               uint chunk_size) {
+  __local int keys[6];
+  const uint chunk = (uint)get_group_id(0);
+  const uint begin = chunk * chunk_size;
+  const uint end = min(count, begin + chunk_size);
+  GnBoxPair boxes = empty_pair(), centroids = empty_pair();
+  uint i;
+  for (i = begin + GN_LOCAL_ID; i < end; i += GN_WGS) {
+    const float4 lo = (float4)(vload3(0, (__global const float*)(primitives + i)), 0.0f);
+    const float4 hi = vload4(1, (__global const float*)(primitives + i));
+    boxes.lo = GN_VMIN(lo, boxes.lo);
+    boxes.hi = GN_VMAX(hi, boxes.hi);
+    centroids.lo = GN_VMIN(lo + hi, centroids.lo);
+    centroids.hi = GN_VMAX(lo + hi, centroids.hi);
+  }
+  boxes = group_union(boxes, keys);
+  centroids = group_union(centroids, keys);
+  if (GN_LOCAL_ID == 0u) {
+    store_bounds(bounds + 2u * chunk, boxes);
+    store_bounds(bounds + 2u * chunk + 1u, centroids);
+  }
+}

@@ -104,10 +104,19 @@ static inline void settle(GnWideWalk* walk, const GnWideRay* ray) {
   take_exact(walk, &hit);
 }
 
+// Whether a lane holds the triangle of the nearest hit so far: trees of parts have it in several leaves, and it is not
+// nearer there.
+static inline int is_nearest(const GnWideWalk* walk, __global const GnTriangleBlock* block, uint lane) {
+  const uint primitive =
+      walk->pending ? walk->pending_block->primitives[walk->pending_lane] : walk->best.primitive;
+  return walk->found && primitive == block->primitives[lane];
+}
+
 // A triangle that floats cannot rank, or not even call met.
 static GN_OUT_OF_LINE void test_exactly(GnWideWalk* walk, const GnWideRay* ray, __global const GnTriangleBlock* block,
                                         uint lane, int verdict) {
   GnHit hit;
+  if (is_nearest(walk, block, lane)) return;
   if (!resolve(&ray->frame, block, lane, verdict, &hit)) return;
   if (!(hit.t >= ray->tmin && hit.t <= ray->tmax)) return;
   settle(walk, ray);

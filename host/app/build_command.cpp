@@ -83,6 +83,10 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
   command->footer(
       "Binned over all three axes, or with --builder fast along a curve: built sooner, traced a little "
       "slower.\n"
+      "--builder best divides large triangles into parts first and moves subtrees afterwards: built later, "
+      "for "
+      "trees\n"
+      "that cost rays less, far less where long triangles overlap.\n"
       "The tree depends on the triangles and the options under \"Tree\" and \"Rays\" alone: its hash is the "
       "same\n"
       "on every device. Times by stage are the device's own; the total is wall clock and includes the upload."
@@ -91,6 +95,7 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
       "\nExamples:\n  gnomon build model.glb\n  gnomon build gen:city:1M --bins 32 --device gpu --json\n"
       "  gnomon build gen:city:1M --heuristic window --light 0\n"
       "  gnomon build gen:city:1M --builder fast\n"
+      "  gnomon build gen:city:1M --builder best\n"
       "  gnomon build gen:atrium --heuristic near-plane --point 0,2,0 --direction 1,0,0 --fov 90,60 --share "
       "0.8");
   command->callback(

@@ -25,11 +25,17 @@ struct MemoryNeed {
   std::optional<std::string> refusal;
 };
 
-MemoryNeed memory_need(const cl::DeviceInfo& device, std::uint64_t triangles) {
+MemoryNeed memory_need(const cl::DeviceInfo& device, std::uint64_t triangles, Builder builder) {
   MemoryNeed need;
-  for (const BufferNeed& buffer : build_memory(device, triangles, BuildOptions{})) {
-    (buffer.scratch ? need.scratch : need.tree) += buffer.bytes;
-    if (!need.refusal) need.refusal = cl::why_not_fit(device, buffer.name, buffer.bytes);
+  BuildOptions options;
+  options.builder = builder;
+  try {
+    for (const BufferNeed& buffer : build_memory(device, triangles, options)) {
+      (buffer.scratch ? need.scratch : need.tree) += buffer.bytes;
+      if (!need.refusal) need.refusal = cl::why_not_fit(device, buffer.name, buffer.bytes);
+    }
+  } catch (const Error& error) {  // a device that ends loops, more triangles than are indexed
+    need.refusal = error.what();
   }
   if (!need.refusal && need.scratch + need.tree > device.global_memory) {
     need.refusal = device.name + " has only " + format_bytes(device.global_memory) + " of memory";
@@ -72,6 +78,13 @@ std::string describe(const MemoryNeed& need, const cl::DeviceInfo& device) {
          (need.refusal ? "; does not fit: " + *need.refusal : "; fits");
 }
 
+Json to_json(const MemoryNeed& need) {
+  return {{"tree_bytes", need.tree},
+          {"scratch_bytes", need.scratch},
+          {"fits", !need.refusal.has_value()},
+          {"reason", need.refusal ? Json(*need.refusal) : Json(nullptr)}};
+}
+
 Json to_json(const Scene& scene) {
   Json lights = Json::object();
   const LightCounts counts = count_lights(scene);
@@ -112,17 +125,19 @@ int run(const Options& options, Console& console) {
   add_scene(document, options.scene, scene);
   document.update(to_json(scene));
   document["build_memory"] = nullptr;
+  document["best_build_memory"] = nullptr;
   std::string memory = "no OpenCL device here to ask";
+  std::string best_memory;
   if (device != nullptr) {
-    const MemoryNeed need = memory_need(*device, scene.triangles.size());
-    document["build_memory"] = {{"tree_bytes", need.tree},
-                                {"scratch_bytes", need.scratch},
-                                {"fits", !need.refusal.has_value()},
-                                {"reason", need.refusal ? Json(*need.refusal) : Json(nullptr)}};
+    const MemoryNeed need = memory_need(*device, scene.triangles.size(), Builder::kBalanced);
+    const MemoryNeed best = memory_need(*device, scene.triangles.size(), Builder::kBest);
+    document["build_memory"] = to_json(need);
+    document["best_build_memory"] = to_json(best);
     memory = describe(need, *device);
+    best_memory = "with --builder best  " + describe(best, *device) + "\n";
   }
   console.print(document);
-  console.print(facts_of(options, scene) + "build needs  " + memory + "\n");
+  console.print(facts_of(options, scene) + "build needs  " + memory + "\n" + best_memory);
   return 0;
 }
 

@@ -82,12 +82,16 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 void add_build_options(CLI::App& command, BuildOptions& options) {
   const std::string tree = "Tree";
   const std::map<std::string, Builder> builders{{to_string(Builder::kBalanced), Builder::kBalanced},
-                                                {to_string(Builder::kFast), Builder::kFast}};
+                                                {to_string(Builder::kFast), Builder::kFast},
+                                                {to_string(Builder::kBest), Builder::kBest}};
   command
       .add_option_function<std::string>(
           "--builder", [&options, builders](const std::string& name) { options.builder = builders.at(name); },
-          "balanced: top down by the heuristic; fast: along the Morton curve, by surface area")
-      ->check(CLI::IsMember({to_string(Builder::kBalanced), to_string(Builder::kFast)}))
+          "balanced: top down by the heuristic; fast: along the Morton curve, by surface area; best: "
+          "balanced over "
+          "parts of large triangles, then optimised")
+      ->check(CLI::IsMember(
+          {to_string(Builder::kBalanced), to_string(Builder::kFast), to_string(Builder::kBest)}))
       ->type_name("B")
       ->group(tree)
       ->default_str(to_string(options.builder));

@@ -22,7 +22,8 @@ struct DeviceBvh {
   cl::Buffer nodes;
   cl::Buffer order;           // leaf order -> index in the caller's triangles
   cl::Buffer leaf_triangles;  // triangles in leaf order
-  std::uint32_t triangle_count = 0;
+  std::uint32_t triangle_count =
+      0;  // entries of the leaf order: Builder::kBest may name a triangle in several leaves
   std::uint32_t node_count = 0;
   std::uint32_t max_depth = 0;
   [[nodiscard]] std::uint64_t bytes() const { return nodes.bytes + order.bytes + leaf_triangles.bytes; }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <limits>
 
+#include "gnomon/device/build_best.h"
 #include "gnomon/device/build_fast.h"
 #include "gnomon/shared/build_layout.h"
 
@@ -148,6 +149,7 @@ BuildPlan plan_build(const cl::DeviceInfo& device, std::uint64_t count, const Bu
 std::vector<BufferNeed> build_memory(const cl::DeviceInfo& device, std::uint64_t triangle_count,
                                      const BuildOptions& options) {
   if (options.builder == Builder::kFast) return fast_memory(device, triangle_count, options);
+  if (options.builder == Builder::kBest) return best_memory(device, triangle_count, options);
   return plan_build(device, triangle_count, options).buffers();
 }
 

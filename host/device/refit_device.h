@@ -11,9 +11,10 @@ namespace gnomon {
 
 // Gives the tree the triangles' new corners, and every node the box that a builder would give it; nodes,
 // links and leaf order stay. `triangles` are those the tree was built of, in the same order. Unmoved ones
-// leave every byte as it was. Throws Error: kInvalidArgument (another number of triangles), kBadScene (as
-// build_device; the tree is then as it was), kInvalidArgument also where the device ends the loops this
-// takes, kOutOfMemory, kDevice. A Tracer made of the tree before is not to be used again.
+// leave every byte as it was. Throws Error: kInvalidArgument (another number of triangles, or a tree of
+// parts: Builder::kBest), kBadScene (as build_device; the tree is then as it was), kInvalidArgument also
+// where the device ends the loops this takes, kOutOfMemory, kDevice. A Tracer made of the tree before is not
+// to be used again.
 void refit_device(const cl::Context& context, DeviceBvh& tree, std::span<const Triangle> triangles);
 
 // The same for a wide tree. Its slots are in order of area again, those of equal area in the order they had,

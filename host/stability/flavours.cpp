@@ -5,7 +5,9 @@ namespace gnomon::stability {
 std::vector<Builder> builders() {
   BuildOptions fast;
   fast.builder = gnomon::Builder::kFast;
-  return {{"balanced", {}}, {"fast", fast}};
+  BuildOptions best;
+  best.builder = gnomon::Builder::kBest;
+  return {{"balanced", {}}, {"fast", fast}, {"best", best}};
 }
 
 std::vector<Flavour> flavours_of(const cl::DeviceInfo& device) {

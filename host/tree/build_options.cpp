@@ -78,6 +78,18 @@ void check_fast(const BuildOptions& options) {
     refuse("median_depth = " + std::to_string(options.median_depth));
 }
 
+// Nor here: reinsertion weighs boxes by three face weights, and divides triangles by no policy.
+void check_best(const BuildOptions& options) {
+  const auto refuse = [](const std::string& what) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "builder best optimises measures of three face weights on all axes: it cannot heed " + what +
+                    "; use builder balanced");
+  };
+  if (options.measure.kind != GN_MEASURE_LINEAR) refuse("heuristic " + heuristic_name(options));
+  if (options.axes != AxisPolicy::kAll) refuse("heuristic " + heuristic_name(options));
+  if (options.published_leaves.on) refuse("published_leaves");
+}
+
 }  // namespace
 
 const char* to_string(Builder builder) {
@@ -86,6 +98,8 @@ const char* to_string(Builder builder) {
       return "balanced";
     case Builder::kFast:
       return "fast";
+    case Builder::kBest:
+      return "best";
   }
   return "unknown";
 }
@@ -154,8 +168,8 @@ GnHeuristic heuristic_of(const BuildOptions& options, const float lo[3], const f
 }
 
 void BuildOptions::check() const {
-  require(builder == Builder::kBalanced || builder == Builder::kFast, "builder",
-          std::to_string(static_cast<unsigned>(builder)), "{balanced, fast}");
+  require(builder == Builder::kBalanced || builder == Builder::kFast || builder == Builder::kBest, "builder",
+          std::to_string(static_cast<unsigned>(builder)), "{balanced, fast, best}");
   check_measure(measure);
   require(static_cast<std::uint32_t>(axes) <= GN_AXES_LSPH, "axes",
           std::to_string(static_cast<unsigned>(axes)), "{all, spfh, lsph}");
@@ -175,6 +189,7 @@ void BuildOptions::check() const {
   require_or_zero(subtree_size, 32, 1048576, "subtree_size", "{0, 32..1048576}");
   require_or_zero(chunk_size, 64, 1048576, "chunk_size", "{0, 64..1048576}");
   if (builder == Builder::kFast) check_fast(*this);
+  if (builder == Builder::kBest) check_best(*this);
 }
 
 }  // namespace gnomon

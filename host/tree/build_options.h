@@ -13,6 +13,7 @@ namespace gnomon {
 enum class Builder : std::uint32_t {
   kBalanced,  // top down, binned over three axes, by any measure
   kFast,      // along the Morton curve, bottom up, by surface area: host/notes/fast-builder.md
+  kBest,      // balanced over parts of large triangles, then optimised: host/notes/best-builder.md
 };
 [[nodiscard]] const char* to_string(Builder builder);
 
@@ -51,7 +52,8 @@ struct PublishedLeaves {
 
 struct BuildOptions {
   // kFast reads bins, max_leaf_size and the costs; it refuses other measures, axis policies, published_leaves
-  // and another median_depth.
+  // and another median_depth. kBest takes measures that three face weights express (surface area, parallel rays, their
+  // mixtures) and all axes; its leaf order may name a triangle in several leaves.
   Builder builder = Builder::kBalanced;
   // What a box's hit probability is taken to be. Others than surface area: gnomon/areas/measure.h.
   // measure.area_share mixes one with surface area.

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "gnomon/shared/axis_policy.h"
+#include "gnomon/tree/build_best_reference.h"
 #include "gnomon/tree/build_fast_reference.h"
 
 namespace gnomon {
@@ -224,16 +226,13 @@ std::vector<Node> compact_nodes(const std::vector<Node>& sparse, const std::vect
   return nodes;
 }
 
-Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& options, SplitTally* tally) {
-  options.check();
-  if (options.builder == Builder::kFast) return build_fast_reference(triangles, options);
+Bvh build_over_primitives(std::vector<GnPrimitive> primitives, std::span<const Triangle> triangles,
+                          const BuildOptions& options, SplitTally* tally) {
   Bvh bvh;
-  if (triangles.empty()) return bvh;
-  const auto count = static_cast<std::uint32_t>(triangles.size());
-  BuildState builder{options, triangles, {}, {}, {}, {}, {}, {}};
+  if (primitives.empty()) return bvh;
+  const auto count = static_cast<std::uint32_t>(primitives.size());
+  BuildState builder{options, triangles, {}, std::move(primitives), {}, {}, {}, {}};
   if (tally != nullptr) builder.tally = *tally;
-  builder.primitives.reserve(count);
-  for (std::uint32_t i = 0; i < count; ++i) builder.primitives.push_back(primitive_of(triangles[i], i));
   builder.sparse.resize(2 * static_cast<std::size_t>(count));
   builder.is_split.resize(count);
   push_child(builder, task_of(0, count, 0, 0), GN_FLOAT_MAX);
@@ -248,6 +247,17 @@ Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& opt
   bvh.primitives.reserve(count);
   for (const GnPrimitive& p : builder.primitives) bvh.primitives.push_back(p.index);
   return bvh;
+}
+
+Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& options, SplitTally* tally) {
+  options.check();
+  if (options.builder == Builder::kFast) return build_fast_reference(triangles, options);
+  if (options.builder == Builder::kBest) return build_best_reference(triangles, options);
+  std::vector<GnPrimitive> primitives;
+  primitives.reserve(triangles.size());
+  for (const Triangle& triangle : triangles)
+    primitives.push_back(primitive_of(triangle, static_cast<std::uint32_t>(primitives.size())));
+  return build_over_primitives(std::move(primitives), triangles, options, tally);
 }
 
 }  // namespace gnomon

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "gnomon/tree/bvh.h"
 
@@ -22,10 +23,16 @@ struct SplitTally {
 };
 
 // Top-down binned SAH over all three axes (Wald 2007) with the constants of `options`, or what
-// options.builder says (build_fast_reference.h). Throws Error: kInvalidArgument (options), kBadScene (a
-// coordinate that is not finite or beyond 2^48; names the triangle). `tally`, if given, is added to.
+// options.builder says (build_fast_reference.h, build_best_reference.h). Throws Error: kInvalidArgument
+// (options), kBadScene (a coordinate that is not finite or beyond 2^48; names the triangle). `tally`, if
+// given, is added to.
 [[nodiscard]] Bvh build_reference(std::span<const Triangle> triangles, const BuildOptions& options = {},
                                   SplitTally* tally = nullptr);
+
+// The balanced tree over boxes that may be parts of triangles; their indices become the leaf order.
+[[nodiscard]] Bvh build_over_primitives(std::vector<GnPrimitive> primitives,
+                                        std::span<const Triangle> triangles, const BuildOptions& options,
+                                        SplitTally* tally = nullptr);
 
 // Throws Error{kBadScene} saying that the triangle has a coordinate which is not finite or beyond 2^48.
 [[noreturn]] void throw_bad_coordinate(std::uint32_t triangle);

@@ -8,6 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "gnomon/tree/build_best_reference.h"
+#include "gnomon/tree/cover.h"
+#include "gnomon/tree/parts.h"
+
 namespace gnomon {
 
 namespace {
@@ -28,8 +32,15 @@ struct Walk {
   std::vector<std::uint32_t> depth;  // by node
 };
 
-MaybeFault check_sizes(const Bvh& bvh, std::span<const GnTriangle> triangles) {
-  if (bvh.primitives.size() != triangles.size()) {
+// Whether triangles may be in several leaves.
+bool has_parts(const BuildOptions& options) {
+  return options.builder == Builder::kBest;
+}
+
+MaybeFault check_sizes(const Bvh& bvh, std::span<const GnTriangle> triangles, const BuildOptions& options) {
+  const std::uint64_t most =
+      has_parts(options) ? most_parts(triangles.size(), kPartBudget) : triangles.size();
+  if (bvh.primitives.size() < triangles.size() || bvh.primitives.size() > most) {
     return fault("sizes: " + text(bvh.primitives.size()) + " primitives for " + text(triangles.size()) +
                  " triangles");
   }
@@ -75,12 +86,43 @@ MaybeFault check_links(const Bvh& bvh, Walk& walk) {
   return std::nullopt;
 }
 
-MaybeFault check_primitives(const Bvh& bvh) {
-  std::vector<char> seen(bvh.primitives.size(), 0);
+MaybeFault check_primitives(const Bvh& bvh, std::size_t triangles, const BuildOptions& options) {
+  std::vector<char> seen(triangles, 0);
   for (const std::uint32_t primitive : bvh.primitives) {
     if (primitive >= seen.size()) return fault("primitives: index " + text(primitive) + " is out of range");
-    if (seen[primitive] != 0) return fault("primitives: triangle " + text(primitive) + " appears twice");
+    if (seen[primitive] != 0 && !has_parts(options))
+      return fault("primitives: triangle " + text(primitive) + " appears twice");
     seen[primitive] = 1;
+  }
+  const auto lost = std::find(seen.begin(), seen.end(), 0);
+  if (lost == seen.end()) return std::nullopt;
+  return fault("primitives: triangle " + text(static_cast<std::uint64_t>(lost - seen.begin())) +
+               " is in no leaf");
+}
+
+// A triangle once in a leaf. The leaf ranges are known to be a partition.
+MaybeFault check_repeats(const Bvh& bvh) {
+  for (std::size_t index = 0; index < bvh.nodes.size(); ++index) {
+    const Node& node = bvh.nodes[index];
+    if (node.count == 0) continue;
+    std::vector<std::uint32_t> held(bvh.primitives.begin() + node.first,
+                                    bvh.primitives.begin() + node.first + node.count);
+    std::sort(held.begin(), held.end());
+    const auto twice = std::adjacent_find(held.begin(), held.end());
+    if (twice != held.end())
+      return fault("primitives: a leaf holds triangle " + text(*twice) + " twice", index);
+  }
+  return std::nullopt;
+}
+
+MaybeFault check_cover(const Bvh& bvh, std::span<const GnTriangle> triangles) {
+  TriangleBoxes boxes(triangles.size());
+  for (const Node& node : bvh.nodes) {
+    for (std::uint32_t i = 0; i < node.count; ++i) boxes.add(bvh.primitives[node.first + i], node);
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (!boxes_cover(triangles[i], boxes.of(i)))
+      return fault("cover: triangle " + text(i) + " is not wholly in the leaves that hold it");
   }
   return std::nullopt;
 }
@@ -142,7 +184,8 @@ bool contains(const Node& outer, const Node& inner) {
   return true;
 }
 
-MaybeFault check_boxes(const Bvh& bvh, const Walk& walk, std::span<const GnTriangle> triangles) {
+MaybeFault check_boxes(const Bvh& bvh, const Walk& walk, std::span<const GnTriangle> triangles,
+                       const BuildOptions& options) {
   for (const std::uint32_t index : walk.order) {
     for (int axis = 0; axis < 3; ++axis) {
       if (std::isnan(bvh.nodes[index].lo[axis]) || std::isnan(bvh.nodes[index].hi[axis])) {
@@ -160,8 +203,10 @@ MaybeFault check_boxes(const Bvh& bvh, const Walk& walk, std::span<const GnTrian
   for (const std::uint32_t index : walk.order) {
     const Node& node = bvh.nodes[index];
     const Box box = union_of(bvh, node, triangles);
+    const bool within = has_parts(options) && node.count > 0;
     for (int axis = 0; axis < 3; ++axis) {
-      if (node.lo[axis] != box.lo[axis] || node.hi[axis] != box.hi[axis]) {
+      const bool exact = node.lo[axis] == box.lo[axis] && node.hi[axis] == box.hi[axis];
+      if (!(exact || (within && node.lo[axis] >= box.lo[axis] && node.hi[axis] <= box.hi[axis]))) {
         return fault("box: not the union of what it holds, axis " + text(static_cast<unsigned>(axis)), index);
       }
     }
@@ -189,11 +234,12 @@ MaybeFault check_numbering(const Bvh& bvh, const Walk& walk) {
   return std::nullopt;
 }
 
-MaybeFault check_depth(const Bvh& bvh, const Walk& walk, const BuildOptions& options) {
+MaybeFault check_depth(const Bvh& bvh, const Walk& walk, std::size_t triangles, const BuildOptions& options) {
   const auto halvings =
       static_cast<std::uint32_t>(std::bit_width(bvh.primitives.size() - 1));  // ceil(log2(n))
-  const std::uint32_t limit = options.published_leaves.on ? options.published_leaves.max_depth + 1
-                                                          : options.median_depth + halvings + 1;
+  const std::uint32_t limit = has_parts(options)            ? most_depth_of_best(options, triangles)
+                              : options.published_leaves.on ? options.published_leaves.max_depth + 1
+                                                            : options.median_depth + halvings + 1;
   const auto deepest = std::max_element(walk.depth.begin(), walk.depth.end());
   if (*deepest <= limit) return std::nullopt;
   return fault("depth: " + text(*deepest) + " above " + text(limit),
@@ -204,15 +250,18 @@ MaybeFault check_depth(const Bvh& bvh, const Walk& walk, const BuildOptions& opt
 
 std::optional<BvhFault> check_bvh(const Bvh& bvh, std::span<const GnTriangle> triangles,
                                   const BuildOptions& options) {
-  if (MaybeFault found = check_sizes(bvh, triangles)) return found;
+  if (MaybeFault found = check_sizes(bvh, triangles, options)) return found;
   if (triangles.empty()) return std::nullopt;
   Walk walk;
   if (MaybeFault found = check_links(bvh, walk)) return found;
-  if (MaybeFault found = check_primitives(bvh)) return found;
+  if (MaybeFault found = check_primitives(bvh, triangles.size(), options)) return found;
   if (MaybeFault found = check_leaves(bvh, walk, options)) return found;
-  if (MaybeFault found = check_boxes(bvh, walk, triangles)) return found;
+  if (MaybeFault found = check_boxes(bvh, walk, triangles, options)) return found;
   if (MaybeFault found = check_numbering(bvh, walk)) return found;
-  return check_depth(bvh, walk, options);
+  if (MaybeFault found = check_depth(bvh, walk, triangles.size(), options)) return found;
+  if (!has_parts(options)) return std::nullopt;
+  if (MaybeFault found = check_repeats(bvh)) return found;
+  return check_cover(bvh, triangles);
 }
 
 }  // namespace gnomon

@@ -112,9 +112,11 @@ std::size_t triangles_of(const WideBvh& wide) {
 
 void require_count(std::size_t given, std::size_t built) {
   if (given == built) return;
-  throw Error(ErrorCode::kInvalidArgument, "a tree of " + std::to_string(built) +
-                                               " triangles cannot be refitted to " + std::to_string(given) +
-                                               "; build a new one");
+  throw Error(ErrorCode::kInvalidArgument,
+              "a tree of " + std::to_string(built) + " triangles cannot be refitted to " +
+                  std::to_string(given) +
+                  " (builder best counts those it divides more than once); build a new "
+                  "one");
 }
 
 void refit_reference(Bvh& bvh, std::span<const GnTriangle> triangles) {

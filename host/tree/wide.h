@@ -58,7 +58,10 @@ struct WideStats {
 // The first broken promise, or nothing: links in range and each node and block reached once, boxes that hold
 // their triangles and lie inside the parent's, every triangle once with its corners, empty slots inverted and
 // last, slots in order of area, depth. Any bytes may come in.
-[[nodiscard]] std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles);
+// Where triangles may be in several leaves (Builder::kBest), these need only hold all of one between them.
+enum class Repeats { kNone, kAllowed };
+[[nodiscard]] std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles,
+                                                 Repeats repeats = Repeats::kNone);
 
 // XXH3-64 of nodes and blocks, 16 hex digits.
 [[nodiscard]] std::string tree_hash(const WideBvh& wide);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gnomon/shared/collapse_math.h"
+#include "gnomon/tree/cover.h"
 #include "gnomon/tree/wide.h"
 
 namespace gnomon {
@@ -51,7 +52,8 @@ bool holds(const Node& box, const float point[3]) {
 
 class Check {
  public:
-  Check(const WideBvh& wide, std::span<const GnTriangle> triangles) : wide_(wide), triangles_(triangles) {}
+  Check(const WideBvh& wide, std::span<const GnTriangle> triangles, Repeats repeats)
+      : wide_(wide), triangles_(triangles), repeats_(repeats), boxes_(triangles.size()) {}
 
   MaybeFault run() {
     if (MaybeFault found = check_sizes()) return found;
@@ -67,6 +69,10 @@ class Check {
       return fault("triangles: " + text(index_in(triangle_seen_, lost)) + " is in no leaf");
     if (wide_.depth != deepest_)
       return fault("depth: " + text(wide_.depth) + " instead of " + text(deepest_));
+    for (std::size_t i = 0; i < triangles_.size() && repeats_ == Repeats::kAllowed; ++i) {
+      if (!boxes_cover(triangles_[i], boxes_.of(i)))
+        return fault("cover: triangle " + text(i) + " is not wholly in the leaves that hold it");
+    }
     return std::nullopt;
   }
 
@@ -185,9 +191,10 @@ class Check {
       }
       if (primitive >= triangles_.size())
         return fault("triangles: number " + text(primitive) + " of " + text(triangles_.size()), index);
-      if (triangle_seen_[primitive] != 0)
+      if (triangle_seen_[primitive] != 0 && repeats_ == Repeats::kNone)
         return fault("triangles: " + text(primitive) + " appears twice", index);
       triangle_seen_[primitive] = 1;
+      if (repeats_ == Repeats::kAllowed) boxes_.add(primitive, box);
       const GnTriangle& triangle = triangles_[primitive];
       for (int k = 0; k < 3; ++k) {
         const float* corner = k == 0 ? triangle.v0 : k == 1 ? triangle.v1 : triangle.v2;
@@ -195,7 +202,7 @@ class Check {
           return fault("triangles: corner " + text(static_cast<unsigned>(k)) + " of " + text(primitive) +
                            " is another",
                        index);
-        if (!holds(box, corner))
+        if (!holds(box, corner) && repeats_ == Repeats::kNone)
           return fault("box: triangle " + text(primitive) + " reaches beyond its leaf's", index);
       }
     }
@@ -204,6 +211,8 @@ class Check {
 
   const WideBvh& wide_;
   std::span<const GnTriangle> triangles_;
+  Repeats repeats_;
+  TriangleBoxes boxes_;
   std::vector<char> node_seen_, block_seen_, triangle_seen_;
   std::vector<std::uint32_t> order_;
   std::uint32_t deepest_ = 0;
@@ -211,8 +220,9 @@ class Check {
 
 }  // namespace
 
-std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles) {
-  return Check(wide, triangles).run();
+std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles,
+                                   Repeats repeats) {
+  return Check(wide, triangles, repeats).run();
 }
 
 }  // namespace gnomon

@@ -227,4 +227,9 @@ TEST_CASE("the builder is chosen and named, by every command that builds, and re
   require_refused({"--builder", "fast", "--axes", "lsph"}, {"builder fast", "sah+lsph"});
   require_refused({"--builder", "fast", "--median-depth", "9"}, {"builder fast", "median_depth"});
   require_refused({"--builder", "slow"}, {"--builder", "slow"});
+  const auto best = run({"validate", "gen:cottage:8k", "--builder", "best", "--json"});
+  CAPTURE(best.err);
+  REQUIRE(best.status == 0);
+  REQUIRE(json::parse(best.out).at("options").at("builder") == "best");
+  require_refused({"--builder", "best", "--axes", "lsph"}, {"builder best", "sah+lsph"});
 }

@@ -1,0 +1,172 @@
+// Where a node of a binary tree would stand better, and which of many such moves can be made at once. For both compilers.
+// A move takes a node from its parent, which vanishes, and puts it beside another one, under a new parent: the sum of all
+// inner nodes' measures falls by its gain. Source: Meister, Bittner 2018, "Parallel Reinsertion for Bounding Volume
+// Hierarchy Optimization"; the rule for moves that would put two subtrees into one another is ours. Not for what the
+// kernels and the reference do with moves: reinsert.cl, optimise.cpp.
+#ifndef GNOMON_SHARED_REINSERT_MATH_H
+#define GNOMON_SHARED_REINSERT_MATH_H
+
+#include "collapse_math.h"
+#include "measure_math.h"
+#include "reinsert_layout.h"
+
+// The seam for measures: any that three face weights express (measure_math.h).
+typedef struct GnFaces {
+  gn_f32 w[3];
+} GnFaces;
+
+typedef struct GnBox {
+  gn_f32 lo[3];
+  gn_f32 hi[3];
+} GnBox;
+
+GN_INLINE void gn_load_box(GN_GLOBAL const GnNode* node, GnBox* box) {
+  int k;
+  for (k = 0; k < 3; ++k) {
+    box->lo[k] = node->lo[k];
+    box->hi[k] = node->hi[k];
+  }
+}
+
+GN_INLINE gn_f32 gn_box_cost(const GnFaces* faces, const GnBox* box) {
+  return gn_linear_measure(faces->w, box->lo, box->hi);
+}
+
+GN_INLINE gn_f32 gn_slot_cost(const GnFaces* faces, GN_GLOBAL const GnNode* node) {
+  GnBox box;
+  gn_load_box(node, &box);
+  return gn_box_cost(faces, &box);
+}
+
+// The cost of the box around a node and another box.
+GN_INLINE gn_f32 gn_joint_cost(const GnFaces* faces, const GnBox* box, GN_GLOBAL const GnNode* node) {
+  GnBox both;
+  int k;
+  for (k = 0; k < 3; ++k) {
+    both.lo[k] = gn_min(box->lo[k], node->lo[k]);
+    both.hi[k] = gn_max(box->hi[k], node->hi[k]);
+  }
+  return gn_box_cost(faces, &both);
+}
+
+GN_INLINE gn_u32 gn_cost_bin(gn_f32 cost) { return gn_bits_of(cost) >> GN_MEASURE_BIN_SHIFT; }
+
+// Integer shares of the root's cost.
+GN_INLINE gn_u32 gn_cost_units(gn_f32 cost, gn_f32 units) { return (gn_u32)(cost * units); }
+
+// A pair of nodes whose parent may take the node in. saved: what all levels above these two save, less what their parent
+// and its parents grow.
+typedef struct GnSearch {
+  gn_u32 pairs[GN_SEARCH_STACK];
+  gn_f32 saved[GN_SEARCH_STACK];
+  gn_u32 height;
+  gn_u32 left;  // pairs this search may still look at
+} GnSearch;
+
+GN_INLINE void gn_push_pair(GnSearch* search, gn_u32 first, gn_f32 saved) {
+  search->pairs[search->height] = first;
+  search->saved[search->height] = saved;
+  search->height += 1u;
+}
+
+// What is saved below `node` if the box passes through it, or not enough when it is a leaf.
+GN_INLINE gn_f32 gn_saved_below(const GnFaces* faces, GN_GLOBAL const GnNode* node, gn_f32 gain) {
+  return node->count > 0u ? -GN_INFINITY : gain + gn_slot_cost(faces, node);
+}
+
+// The best place among the nodes waiting and all below them. Branches that cannot beat the best so far are left out: a
+// parent made for the node costs no less than the node.
+GN_INLINE void gn_search_below(GN_GLOBAL const GnNode* slots, const GnFaces* faces, const GnBox* box, gn_f32 own,
+                               gn_u32 pivot, GnSearch* search, GnMove* move) {
+  while (search->height > 0u && search->left > 0u) {
+    const gn_u32 top = search->height - 1u;
+    const gn_u32 first = search->pairs[top];
+    const gn_f32 saved = search->saved[top];
+    search->height = top;
+    if (saved - own > move->gain) {
+      const gn_f32 left_gain = saved - gn_joint_cost(faces, box, slots + first);
+      const gn_f32 right_gain = saved - gn_joint_cost(faces, box, slots + first + 1u);
+      const gn_f32 left = gn_saved_below(faces, slots + first, left_gain);
+      const gn_f32 right = gn_saved_below(faces, slots + first + 1u, right_gain);
+      const int right_first = right > left;
+      const gn_f32 best = gn_max(left_gain, right_gain);
+      search->left -= 1u;
+      if (best > move->gain) {
+        move->gain = best;
+        move->target = right_gain > left_gain ? first + 1u : first;
+        move->pivot = pivot;
+      }
+      // The more promising one is looked at first.
+      if (gn_min(left, right) - own > move->gain)
+        gn_push_pair(search, slots[right_first ? first : first + 1u].first, gn_min(left, right));
+      if (gn_max(left, right) - own > move->gain)
+        gn_push_pair(search, slots[right_first ? first + 1u : first].first, gn_max(left, right));
+    }
+  }
+}
+
+// Searches the whole tree for the best place of a node, from its sibling up to the root. above: for each pair its parent's
+// slot. Gains up to GN_LEAST_GAIN of the node's own cost do not count.
+GN_INLINE GnMove gn_find_move(GN_GLOBAL const GnNode* slots, GN_GLOBAL const gn_u32* above, const GnFaces* faces,
+                              gn_u32 node) {
+  GnSearch search;
+  GnMove move;
+  GnBox box, shrunk;
+  gn_u32 pivot = above[node >> 1], beside = node ^ 1u, k;
+  gn_f32 own, saved;
+  int going = 1, first = 1;
+  gn_load_box(slots + node, &box);
+  gn_load_box(slots + beside, &shrunk);  // of what will be left of the pivot
+  own = gn_box_cost(faces, &box);
+  saved = gn_slot_cost(faces, slots + pivot);
+  move.node = node;
+  move.target = GN_NONE;
+  move.pivot = 0u;
+  move.gain = GN_LEAST_GAIN * own;
+  move.made = 0u;
+  move.parent = pivot;
+  move.pad[0] = move.pad[1] = 0u;
+  search.height = 0u;
+  search.left = GN_SEARCH_PAIRS;
+  while (going) {
+    const gn_f32 gain = saved - gn_joint_cost(faces, &box, slots + beside);
+    const gn_f32 below = gn_saved_below(faces, slots + beside, gain);
+    int same = 1;
+    if (!first && gain > move.gain) {
+      move.gain = gain;
+      move.target = beside;
+      move.pivot = pivot;
+    }
+    if (below - own > move.gain) gn_push_pair(&search, slots[beside].first, below);
+    gn_search_below(slots, faces, &box, own, pivot, &search, &move);
+    if (!first) {
+      const gn_f32 before = gn_slot_cost(faces, slots + pivot);
+      for (k = 0u; k < 3u; ++k) {
+        shrunk.lo[k] = gn_min(shrunk.lo[k], slots[beside].lo[k]);
+        shrunk.hi[k] = gn_max(shrunk.hi[k], slots[beside].hi[k]);
+      }
+      saved += before - gn_box_cost(faces, &shrunk);
+    }
+    for (k = 0u; k < 3u; ++k) same &= shrunk.lo[k] == slots[pivot].lo[k] && shrunk.hi[k] == slots[pivot].hi[k];
+    // Where the pivot does not shrink, nothing above it does.
+    if (pivot == GN_ROOT_SLOT || search.left == 0u || (same && saved - own <= move.gain)) going = 0;
+    beside = pivot ^ 1u;
+    pivot = above[pivot >> 1];
+    first = 0;
+  }
+  return move;
+}
+
+// The slots a move changes or relies on: the node's own, its parent's, its sibling's, the target's.
+GN_INLINE gn_u32 gn_claimed_slot(const GnMove* move, gn_u32 i) {
+  return i == 0u ? move->node : i == 1u ? move->node ^ 1u : i == 2u ? move->parent : move->target;
+}
+
+// Whether another move's subtree, into which this one would go, may not move as well: of moves that would put subtrees
+// into each other in a ring the one of least gain gives way, so that no ring closes. Equal gains: the lower slot.
+GN_INLINE int gn_gives_way(const GnMove* move, gn_u32 other_node, gn_f32 other_gain) {
+  if (other_gain > move->gain) return 1;
+  return other_gain == move->gain && other_node > move->node;
+}
+
+#endif

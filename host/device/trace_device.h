@@ -26,7 +26,7 @@ enum class TraceFlavour : std::uint32_t {
   kThread,   // the binary tree, one box at a time: one ray per work-item is the parallelism
   kWide,     // the wide tree, eight boxes at a time: explicit vectors are
   kPacket,   // the same; where 64 or 16 consecutive rays run together (through a point, or parallel), as one
-  kCompact,  // a tree of a third of the memory, one ray per work-item: for devices where memory traffic
+  kCompact,  // two fifths of the wide tree's memory, one ray per work-item: for devices where memory traffic
              // decides
 };
 [[nodiscard]] const char* to_string(TraceFlavour flavour);

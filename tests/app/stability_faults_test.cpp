@@ -19,6 +19,7 @@ const char* const kRay = "shared/ray_math.h";
 const char* const kHit = "shared/hit_math.h";
 const char* const kLeaf = "wide_leaf.h";
 const char* const kWide = "wide_walk.h";
+const char* const kCompact = "trace_compact.cl";
 
 const std::vector<Plant>& plants() {
   static const std::vector<Plant> all{
@@ -75,6 +76,12 @@ const std::vector<Plant>& plants() {
       {"a wide node's last child forgotten",
        "17",
        {{kWide, "height += count - 1u;", "height += count - 2u;"}}},
+      {"a compact node's group that forgets its last node",
+       "17",
+       {{kCompact, "if (visits != 0u) {", "if ((visits & (visits - 1u)) != 0u) {"}}},
+      {"a compact box rounded inwards",
+       "17",
+       {{"shared/compact_math.h", "while (step < 255u &&", "while (step < 0u &&"}}},
       {"an area's exit that is too far",
        "49",
        {{"shared/area_math.h", "#define GN_AREA_SHORTER 9.9999905e-01f", "#define GN_AREA_SHORTER 1.001f"}}},

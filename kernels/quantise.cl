@@ -1,7 +1,7 @@
 // From the wide tree to the compact one (shared/compact_layout.h): nodes one by one, children in the order of their
-// parent's slots, then triangles, then their corners merged. Corners are sorted by a key of their bits; of those with equal
-// bits the first in leaf order stands for all, so the bytes depend neither on the key nor on how the work was cut. Every
-// work-item's loops are short.
+// parent's slots, then triangles, then their corners merged. Corners are sorted by a key of their bits; of those with
+// equal bits the first in leaf order stands for all, so the bytes depend neither on the key nor on how the work was
+// cut. Every work-item's loops are short.
 #include "shared/compact_math.h"
 
 // One work-item per block: how many triangles it holds.
@@ -39,8 +39,8 @@ __kernel void place_nodes(__global const GnWideNode* wide_nodes, __global uint* 
   if (most > 0u) atomic_max(largest_leaf, most);
 }
 
-// One work-item per wide node: writes the compact one, and where the triangles of its leaves' blocks go. starts: how many
-// triangles the blocks before each hold.
+// One work-item per wide node: writes the compact one, and where the triangles of its leaves' blocks go. starts: how
+// many triangles the blocks before each hold.
 __kernel void write_nodes(__global const GnWideNode* wide_nodes, __global const uint* places,
                           __global const uint* starts, __global GnCompactNode* nodes, __global uint* block_places,
                           uint node_count) {
@@ -97,7 +97,8 @@ __kernel void find_corner_keys(__global const uint* plain, __global uint2* pairs
   pairs[corner] = (uint2)(key & key_mask, corner);
 }
 
-// One work-item per pair, sorted by key: the first corner in leaf order with the same bits, and 1 for one that is itself.
+// One work-item per pair, sorted by key: the first corner in leaf order with the same bits, and 1 for one that is
+// itself.
 __kernel void find_first_corners(__global const uint2* pairs, __global const uint* plain, __global uint* first_of,
                                  __global uint* is_first, uint corner_count) {
   const uint index = (uint)get_global_id(0);
@@ -125,8 +126,8 @@ __kernel void find_first_corners(__global const uint2* pairs, __global const uin
   is_first[corner] = first == corner ? 1u : 0u;
 }
 
-// One work-item per corner: the triangle's index of it, and the vertex if it is the first there. ranks: how many corners
-// before each are firsts.
+// One work-item per corner: the triangle's index of it, and the vertex if it is the first there. ranks: how many
+// corners before each are firsts.
 __kernel void write_corners(__global const uint* plain, __global const uint* first_of, __global const uint* ranks,
                             __global uint* triangles, __global uint* vertices, uint corner_count) {
   const uint corner = (uint)get_global_id(0);

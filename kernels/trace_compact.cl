@@ -1,7 +1,7 @@
 // Batched ray tracing over the compact tree, one ray per work-item, for GPUs: a node is five loads of 16 bytes, and of
 // a node's children that the ray meets all wait as one entry of the stack. Children are visited in the order of their
-// slots, turned by the octant of the ray's direction. A quantised box is made the float box it stands for and tested as any
-// other. Options: GN_GROUP_STACK (at least the tree's depth: each level leaves at most one group waiting),
+// slots, turned by the octant of the ray's direction. A quantised box is made the float box it stands for and tested as
+// any other. Options: GN_GROUP_STACK (at least the tree's depth: each level leaves at most one group waiting),
 // GN_SHARED_CORNERS, GN_COUNTERS (walk.h).
 // Source: Ylitie, Karras, Laine 2017 (node groups).
 #include "shared/compact_layout.h"

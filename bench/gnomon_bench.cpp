@@ -68,7 +68,7 @@ void add_options(CLI::App& program, Settings& s) {
       ->capture_default_str();
   program.add_option("--flavours", s.flavours, "of our tracer, by commas; sorted: packet, rays sorted first")
       ->delimiter(',')
-      ->check(CLI::IsMember({"packet", "wide", "portable", "portable-packet", "thread", "sorted"}))
+      ->check(CLI::IsMember({"packet", "wide", "portable", "portable-packet", "thread", "sorted", "compact"}))
       ->capture_default_str();
   program
       .add_option("--builders", s.builders,
@@ -195,7 +195,19 @@ class SceneBench {
     extra["leaf_triangles"] = bvh.primitives.size();
     extra["bytes_per_triangle"] =
         static_cast<double>(stats.bytes) / static_cast<double>(scene_.triangles.size());
+    add_compact(extra);
     put_rows("build", contest, {json::object()}, static_cast<double>(scene_.triangles.size()), extra);
+  }
+
+  // What the compact form of the same tree takes, and how long making it took, once.
+  void add_compact(json& extra) {
+    gnomon::BuildReport report;
+    const auto compact = gnomon::compact_device(context_, wide_, {}, &report);
+    extra["compact_bytes_per_triangle"] =
+        static_cast<double>(compact.bytes()) / static_cast<double>(scene_.triangles.size());
+    extra["compact_vertices"] = compact.vertex_count;
+    extra["compact_shares_corners"] = compact.shares_corners;
+    extra["compact_ms"] = report.total_ms;
   }
 
   std::vector<Ray> rays_of(const std::string& kind) {
@@ -266,6 +278,7 @@ class SceneBench {
     options.sort_rays = flavour == "sorted";
     options.flavour = flavour.ends_with("packet") || options.sort_rays ? gnomon::TraceFlavour::kPacket
                                                                        : gnomon::TraceFlavour::kWide;
+    if (flavour == "compact") options.flavour = gnomon::TraceFlavour::kCompact;
     if (flavour != "thread") return std::make_unique<gnomon::Tracer>(context_, wide_, options);
     options.flavour = gnomon::TraceFlavour::kThread;
     return std::make_unique<gnomon::Tracer>(context_, tree_, options);

@@ -4,6 +4,7 @@
 #include "shared/cost_math.h"
 #include "shared/area_math.h"
 #include "shared/wide_layout.h"
+#include "shared/compact_layout.h"
 
 // From a real address: a null pointer need not have the bits of zero.
 #define GN_OFFSET(type, member) \
@@ -44,6 +45,11 @@ __kernel void probe_layout(__global uint* out) {
   out[31] = GN_OFFSET(GnTriangleBlock, primitives);
   out[32] = GN_OFFSET(GnForest, triangles);
   out[33] = GN_OFFSET(GnCollapseTask, largest_leaf);
+  out[34] = sizeof(GnCompactNode);
+  out[35] = sizeof(GnIndexedTriangle);
+  out[36] = sizeof(GnVertex);
+  out[37] = sizeof(GnPlainTriangle);
+  out[38] = GN_OFFSET(GnCompactNode, planes);
 }
 
 // x[i] y[i] z[i] -> products and sums that would differ were they fused, the division-free reciprocal, and bins.

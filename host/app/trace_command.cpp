@@ -33,7 +33,8 @@ struct Options {
 };
 
 TraceFlavour flavour_from(const std::string& name) {
-  for (const TraceFlavour flavour : {TraceFlavour::kThread, TraceFlavour::kWide, TraceFlavour::kPacket})
+  for (const TraceFlavour flavour :
+       {TraceFlavour::kThread, TraceFlavour::kWide, TraceFlavour::kPacket, TraceFlavour::kCompact})
     if (name == to_string(flavour)) return flavour;
   return TraceFlavour::kAuto;
 }
@@ -195,9 +196,11 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
       ->add_option(
           "--flavour", options->flavour,
           "thread: the binary tree; wide: eight boxes at a time; packet: wide, and rays that run together "
-          "as one; auto: as suits the device. Hits are the "
+          "as one; compact: a tree of two fifths of the memory, for GPUs; auto: as suits the device. Hits "
+          "are "
+          "the "
           "same, boxes a ray are not")
-      ->check(CLI::IsMember({"auto", "thread", "wide", "packet"}))
+      ->check(CLI::IsMember({"auto", "thread", "wide", "packet", "compact"}))
       ->type_name("F")
       ->capture_default_str();
   command

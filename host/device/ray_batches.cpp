@@ -29,6 +29,10 @@ std::uint32_t step_limit_for(const cl::DeviceInfo& device, std::uint32_t wanted)
 }  // namespace
 
 std::string TracePlan::program_options() const {
+  if (compact) {
+    return "-DGN_GROUP_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
+           " -DGN_SHARED_CORNERS=" + (shares_corners ? "1" : "0");
+  }
   if (wide) {
     return "-DGN_WIDE_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
            " -DGN_RAYS_PER_ITEM=" + std::to_string(rays_per_item) +
@@ -55,6 +59,13 @@ TracePlan common_plan(const cl::DeviceInfo& device, const TraceOptions& options)
   return plan;
 }
 
+void refuse_step_limit(const TraceOptions& options, const char* flavour) {
+  if (options.step_limit == 0) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              std::string("the ") + flavour +
+                  " flavour traces rays in one go: leave step_limit 0 or use the thread flavour");
+}
+
 }  // namespace
 
 TracePlan plan_trace(const cl::DeviceInfo& device, const TraceOptions& options, std::uint32_t max_depth,
@@ -74,10 +85,7 @@ TracePlan plan_trace(const cl::DeviceInfo& device, const TraceOptions& options, 
 }
 
 TracePlan plan_wide_trace(const cl::DeviceInfo& device, const TraceOptions& options, std::uint32_t depth) {
-  if (options.step_limit != 0) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "the wide flavour traces rays in one go: leave step_limit 0 or use the thread flavour");
-  }
+  refuse_step_limit(options, "wide");
   TracePlan plan = common_plan(device, options);
   // A node leaves at most seven of its children waiting; the last vector written there is eight long.
   plan.stack_size = (7 * depth + 8 + 63) / 64 * 64;
@@ -87,6 +95,17 @@ TracePlan plan_wide_trace(const cl::DeviceInfo& device, const TraceOptions& opti
   plan.wide = true;
   plan.portable = options.portable;
   plan.fast = options.accuracy == Accuracy::kFast;
+  return plan;
+}
+
+TracePlan plan_compact_trace(const cl::DeviceInfo& device, const TraceOptions& options,
+                             const DeviceCompactBvh& tree) {
+  refuse_step_limit(options, "compact");
+  TracePlan plan = common_plan(device, options);
+  plan.stack_size = (tree.depth + 15) / 16 * 16;
+  plan.most_passes = 1;
+  plan.compact = true;
+  plan.shares_corners = tree.shares_corners;
   return plan;
 }
 

@@ -21,6 +21,8 @@ struct TracePlan {
   std::uint32_t state_bytes = 0;  // of a ray between passes
   bool counters = false;
   bool wide = false;
+  bool compact = false;
+  bool shares_corners = false;  // of a compact tree
   bool portable = false;
   bool fast = false;  // Accuracy::kFast
   [[nodiscard]] std::string program_options() const;
@@ -35,6 +37,10 @@ struct TracePlan {
 // The same for a wide tree of this depth, traced in one go. Throws also for a step limit.
 [[nodiscard]] TracePlan plan_wide_trace(const cl::DeviceInfo& device, const TraceOptions& options,
                                         std::uint32_t depth);
+
+// The same for a compact tree, one ray per work-item.
+[[nodiscard]] TracePlan plan_compact_trace(const cl::DeviceInfo& device, const TraceOptions& options,
+                                           const DeviceCompactBvh& tree);
 
 // Where a batch traced in passes keeps its rays' state. Empty handles for one launch.
 struct Passes {

@@ -30,6 +30,23 @@ GnBounds box_of(const GnWideNode& root) {
   return box;
 }
 
+GnBounds box_of(const CompactNode& root) {
+  GnBounds box{
+      {GN_INFINITY, GN_INFINITY, GN_INFINITY}, 0.0F, {-GN_INFINITY, -GN_INFINITY, -GN_INFINITY}, 0.0F};
+  for (std::uint32_t slot = 0; slot < GN_WIDTH; ++slot) {
+    if ((root.scales >> (24 + slot) & 1U) == 0 && gn_byte_of(root.counts, slot) == 0) continue;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const float scale = gn_axis_scale(root.scales, k);
+      const auto plane = [&](std::uint32_t p) {
+        return gn_plane_at(root.origin[k], scale, gn_byte_of(root.planes[p], slot));
+      };
+      box.lo[k] = std::min(box.lo[k], plane(2 * k));
+      box.hi[k] = std::max(box.hi[k], plane(2 * k + 1));
+    }
+  }
+  return box;
+}
+
 // For rays to be sorted in; none when they are not.
 template <typename Node>
 std::unique_ptr<RaySort> sort_in(const cl::Context& context, const cl::Buffer& nodes,
@@ -50,6 +67,8 @@ const char* to_string(TraceFlavour flavour) {
       return "wide";
     case TraceFlavour::kPacket:
       return "packet";
+    case TraceFlavour::kCompact:
+      return "compact";
   }
   return "?";
 }
@@ -63,6 +82,10 @@ Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOpt
   if (flavour_ != TraceFlavour::kThread && !collapse(tree, options)) flavour_ = TraceFlavour::kThread;
   if (flavour_ == TraceFlavour::kThread) {
     trace_binary(tree, options);
+  } else if (flavour_ == TraceFlavour::kCompact) {
+    compacted_ = compact_device(context, collapsed_);
+    collapsed_ = {};
+    trace_compact(compacted_, options);
   } else {
     trace_wide(collapsed_, options);
   }
@@ -76,7 +99,22 @@ Tracer::Tracer(const cl::Context& context, const DeviceWideBvh& tree, const Trac
         ErrorCode::kInvalidArgument,
         "the thread flavour traces binary trees, not wide ones; give it the tree before the collapse");
   }
-  trace_wide(tree, options);
+  if (flavour_ == TraceFlavour::kCompact) {
+    compacted_ = compact_device(context, tree);
+    trace_compact(compacted_, options);
+  } else {
+    trace_wide(tree, options);
+  }
+}
+
+Tracer::Tracer(const cl::Context& context, const DeviceCompactBvh& tree, const TraceOptions& options)
+    : context_(context), flavour_(TraceFlavour::kCompact) {
+  if (options.flavour != TraceFlavour::kAuto && options.flavour != TraceFlavour::kCompact) {
+    throw Error(ErrorCode::kInvalidArgument, std::string("the ") + to_string(options.flavour) +
+                                                 " flavour does not trace compact trees; give it the tree "
+                                                 "that this one was made from");
+  }
+  trace_compact(tree, options);
 }
 
 // False: the tree has no wide form, and the caller left the flavour to us.
@@ -108,6 +146,15 @@ void Tracer::trace_wide(const DeviceWideBvh& tree, const TraceOptions& options) 
   set_up(flavour_ == TraceFlavour::kPacket ? "trace_packet.cl" : "trace_wide.cl");
 }
 
+void Tracer::trace_compact(const DeviceCompactBvh& tree, const TraceOptions& options) {
+  plan_ = std::make_unique<TracePlan>(plan_compact_trace(context_.device(), options, tree));
+  sort_ = sort_in<CompactNode>(context_, tree.nodes, options);
+  nodes_ = tree.nodes.mem.get();
+  triangles_ = tree.triangles.mem.get();
+  vertices_ = tree.vertices.mem.get();
+  set_up("trace_compact.cl");
+}
+
 void Tracer::set_up(const char* source) {
   closest_ = context_.programs().kernel({source}, plan_->program_options(), "trace_closest");
   any_ = context_.programs().kernel({source}, plan_->program_options(), "trace_any");
@@ -131,6 +178,7 @@ cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, const 
                                      std::span<const cl_event> wait_for) const {
   cl::set_arguments(kernel.get(), nodes_, triangles_, launch.rays, launch.answers, invalid_, launch.counters,
                     launch.count);
+  if (plan_->compact) cl::set_arguments_from(kernel.get(), 7, vertices_);
   if (plan_->step_limit != 0) {
     cl::set_arguments_from(kernel.get(), 7, passes.states, passes.waiting, passes.entries, passes.paused,
                            pass);

@@ -13,6 +13,7 @@
 #include "gnomon/cl/context.h"
 #include "gnomon/device/build_device.h"
 #include "gnomon/device/collapse_device.h"
+#include "gnomon/device/compact_device.h"
 
 namespace gnomon {
 
@@ -21,10 +22,12 @@ using Hit = GnHit;
 
 // How rays are traced; the answers are the same bits.
 enum class TraceFlavour : std::uint32_t {
-  kAuto,    // packet on CPUs that let loops run, thread elsewhere
-  kThread,  // the binary tree, one box at a time: one ray per work-item is the parallelism
-  kWide,    // the wide tree, eight boxes at a time: explicit vectors are
-  kPacket,  // the same; where 64 or 16 consecutive rays run together (through a point, or parallel), as one
+  kAuto,     // packet on CPUs that let loops run, thread elsewhere
+  kThread,   // the binary tree, one box at a time: one ray per work-item is the parallelism
+  kWide,     // the wide tree, eight boxes at a time: explicit vectors are
+  kPacket,   // the same; where 64 or 16 consecutive rays run together (through a point, or parallel), as one
+  kCompact,  // two fifths of the wide tree's memory, one ray per work-item: for devices where memory traffic
+             // decides
 };
 [[nodiscard]] const char* to_string(TraceFlavour flavour);
 
@@ -74,11 +77,14 @@ class RaySort;
 // Holds the kernels for one tree. The context and the tree must outlive it.
 class Tracer {
  public:
-  // Wide and packet collapse the tree first and keeps the result; leaves too large for it leave kAuto with
-  // the thread flavour. Throws Error: kDevice, kOutOfMemory, kInvalidArgument.
+  // Wide, packet and compact collapse the tree first and keep the result; leaves too large for it leave kAuto
+  // with the thread flavour. Throws Error: kDevice, kOutOfMemory, kInvalidArgument.
   Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options = {});
-  // Traces a wide tree; the flavour asked for must not be thread. Throws the same.
+  // Traces a wide tree, or for the compact flavour what it makes of it; the flavour asked for must not be
+  // thread. Throws the same.
   Tracer(const cl::Context& context, const DeviceWideBvh& tree, const TraceOptions& options = {});
+  // Traces a compact tree; the flavour asked for must be compact or left to us. Throws the same.
+  Tracer(const cl::Context& context, const DeviceCompactBvh& tree, const TraceOptions& options = {});
   Tracer(Tracer&&) noexcept;
   ~Tracer();
 
@@ -102,6 +108,7 @@ class Tracer {
   [[nodiscard]] bool collapse(const DeviceBvh& tree, const TraceOptions& options);
   void trace_binary(const DeviceBvh& tree, const TraceOptions& options);
   void trace_wide(const DeviceWideBvh& tree, const TraceOptions& options);
+  void trace_compact(const DeviceCompactBvh& tree, const TraceOptions& options);
   void set_up(const char* source);
   [[nodiscard]] cl::Handle<cl_event> enqueue(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                              const Passes& passes, std::uint32_t pass,
@@ -117,9 +124,11 @@ class Tracer {
 
   const cl::Context& context_;
   TraceFlavour flavour_;
-  DeviceWideBvh collapsed_;  // when the tracer made it
+  DeviceWideBvh collapsed_;     // when the tracer made it
+  DeviceCompactBvh compacted_;  // the same
   cl_mem nodes_ = nullptr;
   cl_mem triangles_ = nullptr;
+  cl_mem vertices_ = nullptr;  // of a compact tree
   std::unique_ptr<TracePlan> plan_;
   std::unique_ptr<RaySort> sort_;  // when rays are to be sorted
   cl::Handle<cl_kernel> closest_;

@@ -21,6 +21,9 @@ std::vector<Flavour> flavours_of(const cl::DeviceInfo& device) {
   TraceOptions packet;
   packet.flavour = TraceFlavour::kPacket;
   flavours.push_back({"packet", packet});
+  TraceOptions compact;
+  compact.flavour = TraceFlavour::kCompact;
+  flavours.push_back({"compact", compact});
   wide.portable = packet.portable = true;
   flavours.push_back({"wide portable", wide});
   flavours.push_back({"packet portable", packet});

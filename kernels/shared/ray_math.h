@@ -67,21 +67,33 @@ GN_INLINE GnRayFrame gn_ray_frame(const GnRay* ray) {
 // infinities stay themselves.
 GN_INLINE gn_f32 gn_slab_limit(gn_f32 t) { return t * (t < 0.0f ? 1.0f - GN_SLAB_SLACK : 1.0f + GN_SLAB_SLACK); }
 
-// Where the ray enters the box, or +inf if it misses it within [tmin, limit]. limit comes from gn_slab_limit.
-// 0 * inf (a ray in a face's plane) gives NaN, which loses every comparison: that slab then bounds nothing. So does a
-// reciprocal that is NaN.
-GN_INLINE gn_f32 gn_box_entry(const GnRayFrame* ray, const gn_f32* lo, const gn_f32* hi, gn_f32 tmin, gn_f32 limit) {
+// Where a ray enters between its nearer and farther planes, or +inf if it misses them within [tmin, limit]. limit comes
+// from gn_slab_limit. 0 * inf (a ray in a face's plane) gives NaN, which loses every comparison: that slab then bounds
+// nothing. So does a reciprocal that is NaN.
+GN_INLINE gn_f32 gn_planes_entry(const GnRayFrame* ray, const gn_f32* nearer, const gn_f32* farther, gn_f32 tmin,
+                                 gn_f32 limit) {
   gn_f32 near = tmin, far = GN_INFINITY;
   int k;
   for (k = 0; k < 3; ++k) {
-    const int backwards = ray->inverse[k] < 0.0f;
-    const gn_f32 a = ((backwards ? hi[k] : lo[k]) - ray->origin[k]) * ray->inverse[k];
-    const gn_f32 b = ((backwards ? lo[k] : hi[k]) - ray->origin[k]) * ray->inverse[k];
+    const gn_f32 a = (nearer[k] - ray->origin[k]) * ray->inverse[k];
+    const gn_f32 b = (farther[k] - ray->origin[k]) * ray->inverse[k];
     near = gn_max(a, near);
     far = gn_min(b, far);
   }
   far = gn_min(gn_slab_limit(far), limit);
   return near <= far ? near : GN_INFINITY;
+}
+
+// The same for a box.
+GN_INLINE gn_f32 gn_box_entry(const GnRayFrame* ray, const gn_f32* lo, const gn_f32* hi, gn_f32 tmin, gn_f32 limit) {
+  gn_f32 nearer[3], farther[3];
+  int k;
+  for (k = 0; k < 3; ++k) {
+    const int backwards = ray->inverse[k] < 0.0f;
+    nearer[k] = backwards ? hi[k] : lo[k];
+    farther[k] = backwards ? lo[k] : hi[k];
+  }
+  return gn_planes_entry(ray, nearer, farther, tmin, limit);
 }
 
 #endif

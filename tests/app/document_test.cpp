@@ -110,6 +110,9 @@ TEST_CASE("trace names the flavour that traced, and takes one") {
   const json packet = traced("packet");
   CHECK(packet.at("flavour") == "packet");
   CHECK(packet.at("hits") == thread.at("hits"));
+  const json compact = traced("compact");
+  CHECK(compact.at("flavour") == "compact");
+  CHECK(compact.at("hits") == thread.at("hits"));
   const json left_to_us = traced("auto");
   CHECK(left_to_us.at("options").at("flavour") == "auto");
   CHECK((left_to_us.at("flavour") == "thread" || left_to_us.at("flavour") == "packet"));

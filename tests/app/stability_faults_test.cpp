@@ -21,6 +21,7 @@ const char* const kRay = "shared/ray_math.h";
 const char* const kHit = "shared/hit_math.h";
 const char* const kLeaf = "wide_leaf.h";
 const char* const kWide = "wide_walk.h";
+const char* const kCompact = "trace_compact.cl";
 
 const std::vector<Plant>& plants() {
   static const std::vector<Plant> all{
@@ -104,6 +105,12 @@ const std::vector<Plant>& plants() {
        "17",
        "wide",
        {{kWide, "height += count - 1u;", "height += count - 2u;"}}},
+      {"a compact node's group that forgets its last node",
+       "17",
+       {{kCompact, "if (visits != 0u) {", "if ((visits & (visits - 1u)) != 0u) {"}}},
+      {"a compact box rounded inwards",
+       "17",
+       {{"shared/compact_math.h", "while (step < 255u &&", "while (step < 0u &&"}}},
       {"an area's exit that is too far",
        "49",
        "thread",

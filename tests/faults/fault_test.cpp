@@ -224,6 +224,19 @@ TEST_CASE("tracing by the binary tree, in one go and in passes") {
   }
 }
 
+TEST_CASE("making a tree compact and tracing it") {
+  if (shared().device().loop_limit != 0) return;  // such devices have none
+  const DeviceBvh tree = build_device(shared(), triangles());
+  const Outcomes outcomes = fail_each(
+      [&] {
+        const DeviceWideBvh wide = collapse_device(shared(), tree);
+        const DeviceCompactBvh compact = compact_device(shared(), wide);
+        return trace_all(shared(), Tracer(shared(), compact));
+      },
+      60);
+  REQUIRE(outcomes.errors.contains("clEnqueueNDRangeKernel"));
+}
+
 TEST_CASE("collapsing and tracing by the wide tree") {
   if (shared().device().loop_limit != 0) return;  // such devices have none
   const DeviceBvh tree = build_device(shared(), triangles());

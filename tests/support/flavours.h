@@ -81,6 +81,8 @@ inline std::vector<GnHit> require_equal_flavours(const Triangles& triangles, con
     if (takes_packets()) require_same_answers(thread, trace(tree, rays, TraceFlavour::kPacket, portable));
     require_same_answers(thread, trace(tree, rays, TraceFlavour::kWide, portable));
   }
+  require_same_answers(thread, trace(tree, rays, TraceFlavour::kCompact));
+  require_same_answers(thread, trace(tree, rays, TraceFlavour::kCompact, false, true));
   for (const bool portable : {false, true}) {
     const Traced counted = trace(tree, rays, TraceFlavour::kWide, portable, true);
     require_same_answers(thread, counted);

@@ -73,6 +73,15 @@ inline std::vector<GnTriangle> repeated(const GnTriangle& t, std::uint32_t count
   return {count, t};
 }
 
+// Every coordinate times `scale`, plus `offset`.
+inline std::vector<GnTriangle> scaled(std::vector<GnTriangle> triangles, float scale, float offset) {
+  for (GnTriangle& t : triangles) {
+    for (float* v : {t.v0, t.v1, t.v2})
+      for (std::size_t k = 0; k < 3; ++k) v[k] = v[k] * scale + offset;
+  }
+  return triangles;
+}
+
 // Named inputs on which builders go wrong.
 inline std::vector<std::pair<std::string, std::vector<GnTriangle>>> awkward_inputs() {
   std::vector<std::pair<std::string, std::vector<GnTriangle>>> out;

@@ -1,0 +1,141 @@
+// From the wide tree to the compact one (shared/compact_layout.h): nodes one by one, children in the order of their
+// parent's slots, then triangles, then their corners merged. Corners are sorted by a key of their bits; of those with
+// equal bits the first in leaf order stands for all, so the bytes depend neither on the key nor on how the work was
+// cut. Every work-item's loops are short.
+#include "shared/compact_math.h"
+
+// One work-item per block: how many triangles it holds.
+__kernel void count_block_triangles(__global const GnTriangleBlock* blocks, __global uint* counts, uint block_count) {
+  const uint block = (uint)get_global_id(0);
+  uint lane, count = 0u;
+  if (block >= block_count) return;
+  for (lane = 0u; lane < GN_WIDTH; ++lane) count += blocks[block].primitives[lane] != GN_NONE;
+  counts[block] = count;
+}
+
+// One work-item per wide node: where the compact nodes of its children go. largest_leaf: of all, in triangles.
+__kernel void place_nodes(__global const GnWideNode* wide_nodes, __global uint* places,
+                          volatile __global uint* largest_leaf, uint node_count) {
+  const uint index = (uint)get_global_id(0);
+  __global const GnWideNode* node = wide_nodes + index;
+  uint child_of[GN_WIDTH], slot, first = GN_NONE, nodes = 0u, most = 0u;
+  if (index >= node_count) return;
+  if (index == 0u) places[0] = 0u;
+  gn_assign_slots(node, child_of);
+  for (slot = 0u; slot < GN_WIDTH && node->links[slot] != GN_NONE; ++slot) {
+    const uint link = node->links[slot];
+    if (gn_is_leaf_link(link)) {
+      most = max(most, gn_link_triangles(link));
+    } else {
+      first = min(first, link);
+    }
+  }
+  for (slot = 0u; slot < GN_WIDTH; ++slot) {
+    const uint link = child_of[slot] == GN_NONE ? GN_NONE : node->links[child_of[slot]];
+    if (link == GN_NONE || gn_is_leaf_link(link)) continue;
+    places[link] = first + nodes;
+    nodes += 1u;
+  }
+  if (most > 0u) atomic_max(largest_leaf, most);
+}
+
+// One work-item per wide node: writes the compact one, and where the triangles of its leaves' blocks go. starts: how
+// many triangles the blocks before each hold.
+__kernel void write_nodes(__global const GnWideNode* wide_nodes, __global const uint* places,
+                          __global const uint* starts, __global GnCompactNode* nodes, __global uint* block_places,
+                          uint node_count) {
+  const uint index = (uint)get_global_id(0);
+  __global const GnWideNode* node = wide_nodes + index;
+  uint child_of[GN_WIDTH], slot, block, next;
+  GnCompactNode out;
+  if (index >= node_count) return;
+  gn_assign_slots(node, child_of);
+  gn_fill_compact_node(node, child_of, &out);
+  block = gn_first_block(node);
+  if (block != GN_NONE) out.first_triangle = starts[block];
+  next = out.first_triangle;
+  for (slot = 0u; slot < GN_WIDTH; ++slot) {
+    const uint link = child_of[slot] == GN_NONE ? GN_NONE : node->links[child_of[slot]];
+    uint i, count;
+    if (link == GN_NONE || !gn_is_leaf_link(link)) continue;
+    count = gn_link_triangles(link);
+    for (i = 0u; i < gn_blocks_of(count); ++i) block_places[gn_link_block(link) + i] = next + GN_WIDTH * i;
+    next += count;
+  }
+  nodes[places[index]] = out;
+}
+
+// One work-item per lane of a block: writes its triangle, GnPlainTriangle as bits.
+__kernel void write_triangles(__global const GnTriangleBlock* blocks, __global const uint* block_places,
+                              __global uint* plain, uint lane_count) {
+  const uint index = (uint)get_global_id(0);
+  const uint lane = index % GN_WIDTH;
+  __global const uint* corners = (__global const uint*)(blocks + index / GN_WIDTH);
+  __global uint* out;
+  uint k;
+  if (index >= lane_count || blocks[index / GN_WIDTH].primitives[lane] == GN_NONE) return;
+  out = plain + 10u * ((size_t)block_places[index / GN_WIDTH] + lane);
+  for (k = 0u; k < 9u; ++k) out[k] = corners[GN_WIDTH * k + lane];
+  out[9] = blocks[index / GN_WIDTH].primitives[lane];
+}
+
+static inline uint3 corner_bits(__global const uint* plain, uint corner) {
+  return vload3(0, plain + 10u * (size_t)(corner / 3u) + 3u * (corner % 3u));
+}
+
+// One work-item per corner: a pair of its key and itself.
+__kernel void find_corner_keys(__global const uint* plain, __global uint2* pairs, uint key_mask, uint corner_count) {
+  const uint corner = (uint)get_global_id(0);
+  uint3 bits;
+  uint key;
+  if (corner >= corner_count) return;
+  bits = corner_bits(plain, corner);
+  key = bits.x * 0x9e3779b1u;
+  key = ((key ^ (key >> 15)) + bits.y) * 0x85ebca77u;
+  key = ((key ^ (key >> 13)) + bits.z) * 0xc2b2ae3du;
+  key ^= key >> 16;
+  pairs[corner] = (uint2)(key & key_mask, corner);
+}
+
+// One work-item per pair, sorted by key: the first corner in leaf order with the same bits, and 1 for one that is
+// itself.
+__kernel void find_first_corners(__global const uint2* pairs, __global const uint* plain, __global uint* first_of,
+                                 __global uint* is_first, uint corner_count) {
+  const uint index = (uint)get_global_id(0);
+  uint low = 0u, high = index, corner, first;
+  uint3 bits;
+  if (index >= corner_count) return;
+  corner = pairs[index].y;
+  bits = corner_bits(plain, corner);
+  while (low < high) {
+    const uint middle = low + (high - low) / 2u;
+    if (pairs[middle].x < pairs[index].x) {
+      low = middle + 1u;
+    } else {
+      high = middle;
+    }
+  }
+  for (;;) {
+    uint3 other;
+    first = pairs[low].y;
+    other = corner_bits(plain, first);
+    if (first == corner || (other.x == bits.x && other.y == bits.y && other.z == bits.z)) break;
+    low += 1u;
+  }
+  first_of[corner] = first;
+  is_first[corner] = first == corner ? 1u : 0u;
+}
+
+// One work-item per corner: the triangle's index of it, and the vertex if it is the first there. ranks: how many
+// corners before each are firsts.
+__kernel void write_corners(__global const uint* plain, __global const uint* first_of, __global const uint* ranks,
+                            __global uint* triangles, __global uint* vertices, uint corner_count) {
+  const uint corner = (uint)get_global_id(0);
+  const uint triangle = corner / 3u, place = corner % 3u;
+  uint rank;
+  if (corner >= corner_count) return;
+  rank = ranks[first_of[corner]];
+  triangles[4u * (size_t)triangle + place] = rank;
+  if (place == 0u) triangles[4u * (size_t)triangle + 3u] = plain[10u * (size_t)triangle + 9u];
+  if (first_of[corner] == corner) vstore3(corner_bits(plain, corner), rank, vertices);
+}

@@ -83,6 +83,11 @@ static inline uint3 corner_bits(__global const uint* plain, uint corner) {
   return vload3(0, plain + 10u * (size_t)(corner / 3u) + 3u * (corner % 3u));
 }
 
+static inline int has_bits(__global const uint* plain, uint corner, uint3 bits) {
+  const uint3 own = corner_bits(plain, corner);
+  return own.x == bits.x && own.y == bits.y && own.z == bits.z;
+}
+
 // One work-item per corner: a pair of its key and itself.
 __kernel void find_corner_keys(__global const uint* plain, __global uint2* pairs, uint key_mask, uint corner_count) {
   const uint corner = (uint)get_global_id(0);
@@ -115,12 +120,10 @@ __kernel void find_first_corners(__global const uint2* pairs, __global const uin
       high = middle;
     }
   }
-  for (;;) {
-    uint3 other;
-    first = pairs[low].y;
-    other = corner_bits(plain, first);
-    if (first == corner || (other.x == bits.x && other.y == bits.y && other.z == bits.z)) break;
+  first = pairs[low].y;
+  while (low < index && !has_bits(plain, first, bits)) {
     low += 1u;
+    first = pairs[low].y;
   }
   first_of[corner] = first;
   is_first[corner] = first == corner ? 1u : 0u;

@@ -55,7 +55,6 @@ TEST_CASE("axis policies, published and repaired, choose what the reference choo
         options.axes = axes;
         options.policy.repaired = repaired;
         options.published_leaves.on = !repaired;
-        options.bins = repaired ? 16 : 40;
         options.work_group_size = 1;
         same_tree(triangles, options);
       }

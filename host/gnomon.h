@@ -30,3 +30,5 @@
 #include "gnomon/tree/bvh_check.h"
 #include "gnomon/tree/oracle.h"
 #include "gnomon/tree/top_level.h"
+#include "gnomon/tree/tree_export.h"
+#include "gnomon/tree/tree_file.h"

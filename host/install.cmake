@@ -10,7 +10,7 @@ set(public_headers
   areas/ray_measure.h areas/projection.h areas/cone_weights.h areas/membership.h areas/areas_from_scene.h
   areas/area_rays.h areas/measure.h areas/shared_area.h
   tree/build_options.h tree/bvh.h tree/bvh_check.h tree/wide.h tree/compact.h tree/build_reference.h tree/oracle.h tree/candidate_tree.h tree/top_level.h
-  tree/optimise.h
+  tree/optimise.h tree/tree_file.h tree/tree_export.h
   cl/opencl.h cl/check.h cl/handle.h cl/device.h cl/context.h cl/launch.h
   device/build_device.h device/collapse_device.h device/optimise_device.h device/compact_device.h device/trace_device.h
   device/forest.h device/find_areas.h device/trace_areas.h
@@ -27,6 +27,10 @@ install(TARGETS gnomon EXPORT gnomon
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 if(TARGET gnomon_program)
   install(TARGETS gnomon_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+if(TARGET gnomon_manual)
+  install(DIRECTORY ${GNOMON_MANUAL}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+  install(FILES ${GNOMON_MANUAL}/completions/gnomon DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 endif()
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/gnomon)

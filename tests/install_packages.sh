@@ -3,14 +3,14 @@
 #   install_packages.sh build          the library and the program, and PoCL to run them on the CPU
 #   install_packages.sh build tests    also the test suite, with two more OpenCL implementations
 #   install_packages.sh build bench    also the benchmarks and their peer
-#   install_packages.sh build demo     also what bench/demo.sh reads results with
+#   install_packages.sh build demo     also what bench/demo.sh and bench/figures.sh read results with
 # Needs root or sudo, and only when something is missing. Never asks.
 set -euo pipefail
 
 declare -A packages=(
   [build]="g++ cmake ninja-build pkg-config ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd libtinygltf-dev
     libtinyobjloader-dev libcli11-dev nlohmann-json3-dev libstb-dev libxxhash-dev libglm-dev"
-  [tests]="catch2 libboost-dev mesa-opencl-icd oclgrind"
+  [tests]="catch2 libboost-dev mesa-opencl-icd oclgrind help2man jq"
   [bench]="libembree-dev libbenchmark-dev"
   [demo]="jq"
 )

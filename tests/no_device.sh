@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # A machine without any OpenCL platform must not look healthy: the device tests fail, and say what to install.
-#   no_device.sh DEVICE_TEST
+#   no_device.sh DEVICE_TEST [ARGUMENTS...]
 set -euo pipefail
 export OCL_ICD_VENDORS=/nonexistent
 unset GNOMON_DEVICE
-if output=$("$1" "[portable]" -w NoTests 2>&1); then
+test=$1
+shift
+if output=$("$test" "[portable]" "$@" 2>&1); then
   echo "the device tests pass where there is no device:"
   echo "$output"
   exit 1

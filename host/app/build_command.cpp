@@ -1,10 +1,13 @@
 // gnomon build: builds a tree and says how long each stage took and what came out.
 #include <memory>
+#include <string_view>
 
 #include "build_timing.h"
 #include "commands.h"
 #include "device_choice.h"
 #include "document.h"
+#include "gnomon/tree/tree_export.h"
+#include "gnomon/tree/tree_file.h"
 #include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
@@ -13,8 +16,12 @@
 namespace gnomon::app {
 namespace {
 
+constexpr std::string_view kTreeFile = ".gnb";
+constexpr std::string_view kPlainTree = ".bvh2";
+
 struct Options {
   SceneOptions scene;
+  std::string file;
   DeviceOptions device;
   BuildOptions build;
   HeuristicOptions heuristic;
@@ -44,23 +51,40 @@ std::string facts_of(const cl::DeviceInfo& device, const Scene& scene, const Opt
                           std::to_string(build.stats.largest_leaf) + " at most");
   facts.add("memory", format_bytes(build.tree.bytes()) + " tree, " +
                           format_bytes(build.median.scratch_bytes) + " scratch");
+  if (!options.file.empty()) facts.add("written", options.file);
   return facts.text();
+}
+
+void check_name(const std::string& file) {
+  if (file.empty() || file.ends_with(kTreeFile) || file.ends_with(kPlainTree)) return;
+  throw Error(ErrorCode::kInvalidArgument, "-o " + file + ": a name that ends in " + std::string(kTreeFile) +
+                                               " keeps the tree for gnomon, one in " +
+                                               std::string(kPlainTree) + " for other programs");
+}
+
+void write(const Options& options, const Scene& scene, const TimedBuild& build) {
+  if (options.file.empty()) return;
+  if (options.file.ends_with(kPlainTree)) return export_bvh2(options.file, build.host, scene.triangles);
+  save_tree(options.file, build.host, build.options, scene.triangles);
 }
 
 int run(const Options& options, Console& console) {
   options.build.check();
   check(options.heuristic);
+  check_name(options.file);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
   const BuildOptions tree = with_heuristic(options.build, options.heuristic, scene);
   const TimedBuild build = build_for_use(context, scene, tree, options.runs, console.progress());
   stop_if_interrupted();
+  write(options, scene, build);
   Json document = start_document("build");
   add_device(document, &context.device());
   add_scene(document, options.scene, scene);
   add_tree_options(document, context.device(), scene.triangles.size(), tree);
   add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
+  document["tree_file"] = options.file.empty() ? Json(nullptr) : Json(options.file);
   console.print(document);
   console.print(facts_of(context.device(), scene, options, describe(options.heuristic, tree, scene), build) +
                 "\n" + stage_table(build));
@@ -74,6 +98,12 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
   CLI::App* const command =
       program.add_subcommand("build", "Build a bounding volume hierarchy on a device and time it.");
   add_scene_options(*command, options->scene);
+  command
+      ->add_option(
+          "-o,--output", options->file,
+          "write the tree: FILE.gnb, for --tree of trace, validate, render and info; FILE.bvh2, plain, "
+          "for other programs")
+      ->type_name("FILE");
   add_count(*command, "--repeat", options->runs.repeat, "timed builds, after one to warm up")
       ->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);
@@ -95,7 +125,7 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
       "\nExamples:\n  gnomon build model.glb\n  gnomon build gen:city:1M --bins 32 --device gpu --json\n"
       "  gnomon build gen:city:1M --heuristic window --light 0\n"
       "  gnomon build gen:city:1M --builder fast\n"
-      "  gnomon build gen:city:1M --builder best\n"
+      "  gnomon build gen:city:1M --builder best -o city.gnb\n"
       "  gnomon build gen:atrium --heuristic near-plane --point 0,2,0 --direction 1,0,0 --fov 90,60 --share "
       "0.8");
   command->callback(

@@ -5,6 +5,7 @@ namespace gnomon::app {
 TimedBuild build_timed(const cl::Context& context, const Scene& scene, const BuildOptions& options,
                        const BuildRuns& runs, const Progress& progress) {
   TimedBuild result;
+  result.options = options;
   result.runs = runs;
   if (runs.warm_up) result.tree = build_device(context, scene.triangles, options, nullptr, progress);
   std::vector<BuildReport> reports(runs.repeat);

@@ -19,6 +19,8 @@ struct BuildRuns {
 };
 
 struct TimedBuild {
+  BuildOptions options;  // that decided the tree
+  std::string file;      // it came from; empty: it was built here, in the time below
   DeviceBvh tree;
   BuildRuns runs;
   Spread total_ms;

@@ -107,7 +107,8 @@ std::string describe(const TimedBuild& build) {
   if (build.fault) return "hash " + build.hash + ", " + std::to_string(build.host.nodes.size()) + " nodes";
   return "hash " + build.hash + ", SAH cost " + fixed(build.stats.sah_cost, 2) + ", " +
          std::to_string(build.stats.nodes) + " nodes, " + std::to_string(build.stats.leaves) +
-         " leaves, depth " + std::to_string(build.stats.max_depth);
+         " leaves, depth " + std::to_string(build.stats.max_depth) +
+         (build.file.empty() ? "" : ", from " + build.file);
 }
 
 }  // namespace gnomon::app

@@ -11,6 +11,7 @@ enum ExitStatus : int {
   kBadScene = 4,
   kOutOfMemory = 5,
   kMismatch = 6,
+  kMoved = 7,
   kInterrupted = 130,  // 128 + SIGINT, as shells count
 };
 

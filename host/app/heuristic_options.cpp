@@ -9,6 +9,7 @@
 #include "gnomon/areas/areas_from_scene.h"
 #include "gnomon/areas/measure.h"
 #include "numbers.h"
+#include "options.h"
 
 namespace gnomon::app {
 
@@ -168,7 +169,7 @@ GnMeasure measure_for(const HeuristicOptions& options, const Scene& scene) {
 }  // namespace
 
 void add_heuristic_options(CLI::App& command, HeuristicOptions& options) {
-  const std::string group = "Rays the tree is for";
+  const std::string group = kRaysGroup;
   std::vector<std::string> names{"sah"};
   for (const Heuristic& heuristic : kHeuristics) names.emplace_back(heuristic.name);
   std::vector<std::string> policies;

@@ -9,6 +9,7 @@
 #include "gnomon/device/build_device.h"
 #include "numbers.h"
 #include "scene_source.h"
+#include "tree_source.h"
 
 namespace gnomon::app {
 namespace {
@@ -16,6 +17,7 @@ namespace {
 struct Options {
   SceneOptions scene;
   DeviceOptions device;
+  std::string tree_file;
 };
 
 // Sums over the buffers of a build, and why it would be refused, if so.
@@ -97,6 +99,46 @@ Json to_json(const Scene& scene) {
   return {{"materials", scene.materials.size()}, {"cameras", cameras}, {"lights", lights}, {"bounds", box}};
 }
 
+// A tree of the scene that a file holds.
+struct KeptTree {
+  std::string file;
+  StoredTree tree;
+  std::string hash;
+  BvhStats stats;
+};
+
+std::optional<KeptTree> kept_tree(const Options& options, const Scene& scene) {
+  if (options.tree_file.empty()) return std::nullopt;
+  KeptTree kept{options.tree_file, load_tree_of(scene, options.tree_file), {}, {}};
+  kept.hash = tree_hash(kept.tree.bvh);
+  kept.stats = stats_of(kept.tree.bvh, kept.tree.options);
+  return kept;
+}
+
+Json to_json(const KeptTree& kept) {
+  const BuildOptions& options = kept.tree.options;
+  return {{"file", kept.file},
+          {"hash", kept.hash},
+          {"builder", to_string(options.builder)},
+          {"heuristic", heuristic_name(options)},
+          {"bins", options.bins},
+          {"max_leaf", options.max_leaf_size},
+          {"cost_traversal", options.cost_traversal},
+          {"cost_triangle", options.cost_triangle},
+          {"sah_cost", kept.stats.sah_cost},
+          {"nodes", kept.stats.nodes},
+          {"leaves", kept.stats.leaves},
+          {"max_depth", kept.stats.max_depth},
+          {"largest_leaf", kept.stats.largest_leaf},
+          {"mean_leaf", kept.stats.mean_leaf}};
+}
+
+std::string describe(const KeptTree& kept) {
+  return kept.file + ": hash " + kept.hash + ", builder " + to_string(kept.tree.options.builder) +
+         ", heuristic " + heuristic_name(kept.tree.options) + ", SAH cost " + fixed(kept.stats.sah_cost, 2) +
+         ", " + std::to_string(kept.stats.nodes) + " nodes, depth " + std::to_string(kept.stats.max_depth);
+}
+
 std::string facts_of(const Options& options, const Scene& scene) {
   Facts facts;
   facts.add("scene", options.scene.source + (scene.name.empty() ? "" : " (" + scene.name + ")"));
@@ -120,10 +162,12 @@ int run(const Options& options, Console& console) {
   const cl::DeviceInfo* const device =
       devices.empty() ? nullptr : &cl::choose_device(devices, options.device.choice);
   const Scene scene = load_scene(options.scene, console);
+  const std::optional<KeptTree> kept = kept_tree(options, scene);
   Json document = start_document("info");
   add_device(document, device);
   add_scene(document, options.scene, scene);
   document.update(to_json(scene));
+  document["tree"] = kept ? to_json(*kept) : Json(nullptr);
   document["build_memory"] = nullptr;
   document["best_build_memory"] = nullptr;
   std::string memory = "no OpenCL device here to ask";
@@ -137,7 +181,8 @@ int run(const Options& options, Console& console) {
     best_memory = "with --builder best  " + describe(best, *device) + "\n";
   }
   console.print(document);
-  console.print(facts_of(options, scene) + "build needs  " + memory + "\n" + best_memory);
+  console.print(facts_of(options, scene) + "build needs  " + memory + "\n" + best_memory +
+                (kept ? "tree         " + describe(*kept) + "\n" : ""));
   return 0;
 }
 
@@ -153,10 +198,12 @@ void add_info_command(CLI::App& program, OutputOptions& output, Action& action) 
                    "the device whose memory to compare with, as for build")
       ->envname("GNOMON_DEVICE")
       ->type_name("D");
+  add_tree_file_option(*command, options->tree_file);
   add_output_options(*command, output);
   command->footer(
       "Needs no OpenCL device; with one, it says whether a build would fit.\n\n"
-      "Examples:\n  gnomon info model.glb\n  gnomon info gen:forest:1M --json");
+      "Examples:\n  gnomon info model.glb\n  gnomon info gen:forest:1M --json\n  gnomon info model.glb "
+      "--tree model.gnb");
   command->callback(
       [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }

@@ -24,8 +24,9 @@ const char* const kFooter =
     "  gnomon validate gen:city:100k\n"
     "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png\n"
     "\n"
-    "Exit status: 0 ok, 1 failure, 2 wrong usage, 3 no device, 4 bad scene or ray file, 5 out of memory,\n"
-    "6 validation or a stability case failed, 130 interrupted.\n"
+    "Exit status: 0 ok, 1 failure, 2 wrong usage, 3 no device, 4 bad scene, tree, ray or rows file, 5 out of "
+    "memory,\n"
+    "6 validation or a stability case failed, 7 rows differ, 130 interrupted.\n"
     "\n"
     "Environment: GNOMON_DEVICE (as --device), XDG_CACHE_HOME (compiled kernels go to its folder gnomon),\n"
     "GNOMON_KERNELS (a folder to read kernel sources from), NO_COLOR.";
@@ -89,6 +90,8 @@ int run(int argc, char** argv) {
   add_render_command(program, output, action);
   add_stability_command(program, output, action);
   add_reproduce_command(program, output, action);
+  add_rows_command(program, output, action);
+  add_completion_command(program, action);
   program.footer(kFooter);
   try {
     program.parse(argc, argv);

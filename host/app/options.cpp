@@ -80,7 +80,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 }
 
 void add_build_options(CLI::App& command, BuildOptions& options) {
-  const std::string tree = "Tree";
+  const std::string tree = kTreeGroup;
   const std::map<std::string, Builder> builders{{to_string(Builder::kBalanced), Builder::kBalanced},
                                                 {to_string(Builder::kFast), Builder::kFast},
                                                 {to_string(Builder::kBest), Builder::kBest}};

@@ -30,6 +30,10 @@ struct SceneOptions {
   }
 };
 
+// Groups of --help whose options say which tree to build.
+inline constexpr const char* kTreeGroup = "Tree";
+inline constexpr const char* kRaysGroup = "Rays the tree is for";
+
 void add_output_options(CLI::App& command, OutputOptions& options);
 void add_device_options(CLI::App& command, DeviceOptions& options);
 void add_scene_options(CLI::App& command, SceneOptions& options);

@@ -15,6 +15,7 @@
 #include "interrupt.h"
 #include "numbers.h"
 #include "scene_source.h"
+#include "tree_source.h"
 
 namespace gnomon::app {
 namespace {
@@ -24,6 +25,7 @@ struct Options {
   DeviceOptions device;
   BuildOptions build;
   HeuristicOptions heuristic;
+  std::string tree_file;  // empty: build one
   RenderOptions render;
   double exposure = 0.0;  // in steps of two around the automatic one
   std::string file, heat_map;
@@ -106,8 +108,10 @@ int run(Options options, Console& console) {
   check(options.heuristic);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const BuildOptions tree = with_heuristic(options.build, options.heuristic, scene);
-  const TimedBuild build = build_for_use(context, scene, tree, {1, false}, console.progress());
+  const TimedBuild build =
+      tree_for_use(context, scene, options.tree_file, with_heuristic(options.build, options.heuristic, scene),
+                   {1, false}, console.progress());
+  const BuildOptions& tree = build.options;
   const Outcome outcome = render_timed(options, context, build, scene, console.progress());
   write_pictures(options, outcome);
   for (const std::string& note : outcome.result.notes) console.note(note);
@@ -117,6 +121,7 @@ int run(Options options, Console& console) {
   add_tree_options(document, context.device(), scene.triangles.size(), tree);
   add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
+  add_tree_file(document, build);
   add_outcome(document, options, outcome);
   console.print(document);
   console.print(
@@ -147,6 +152,7 @@ void add_render_command(CLI::App& program, OutputOptions& output, Action& action
       ->capture_default_str();
   add_heuristic_options(*command, options->heuristic);
   add_build_options(*command, options->build);
+  add_tree_file_option(*command, options->tree_file);
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(

@@ -12,6 +12,7 @@
 #include "ray_batch.h"
 #include "scene_source.h"
 #include "trace_timing.h"
+#include "tree_source.h"
 
 namespace gnomon::app {
 namespace {
@@ -21,6 +22,7 @@ struct Options {
   DeviceOptions device;
   BuildOptions build;
   HeuristicOptions heuristic;
+  std::string tree_file;  // empty: build one
   std::string kind = "primary";
   std::uint64_t count = 1'000'000;
   std::uint64_t seed = 1;
@@ -140,8 +142,10 @@ int run(const Options& options, Console& console) {
   const bool any_hit = wants_any_hit(options);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const BuildOptions tree = with_heuristic(options.build, options.heuristic, scene);
-  const TimedBuild build = build_for_use(context, scene, tree, {1, true}, console.progress());
+  const TimedBuild build =
+      tree_for_use(context, scene, options.tree_file, with_heuristic(options.build, options.heuristic, scene),
+                   {1, true}, console.progress());
+  const BuildOptions& tree = build.options;
   const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
   stop_if_interrupted();
   const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, how_to_trace(options),
@@ -155,6 +159,7 @@ int run(const Options& options, Console& console) {
   add_tree_options(document, context.device(), scene.triangles.size(), tree);
   add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
+  add_tree_file(document, build);
   add_trace(document, options, trace, rays.size(), any_hit);
   console.print(document);
   console.print(facts_of(options, context.device(), scene, describe(options.heuristic, tree, scene), build,
@@ -218,11 +223,13 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
       ->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);
   add_heuristic_options(*command, options->heuristic);
+  add_tree_file_option(*command, options->tree_file);
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(explain_ray_kinds() + "\n" + kFiles +
                   "\nExamples:\n  gnomon trace model.glb --rays bounce --count 2M\n"
-                  "  gnomon trace model.glb --rays-in my.rays --hits-out my.hits");
+                  "  gnomon trace model.glb --rays-in my.rays --hits-out my.hits\n"
+                  "  gnomon build model.glb -o model.gnb && gnomon trace model.glb --tree model.gnb");
   command->callback(
       [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }

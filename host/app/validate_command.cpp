@@ -18,6 +18,7 @@
 #include "oracle_rows.h"
 #include "ray_batch.h"
 #include "scene_source.h"
+#include "tree_source.h"
 
 namespace gnomon::app {
 namespace {
@@ -32,6 +33,7 @@ struct Options {
   DeviceOptions device;
   BuildOptions build;
   HeuristicOptions heuristic;
+  std::string tree_file;  // empty: build one
   std::uint64_t count = 20'000;
   std::uint64_t max_rays = 2'000;
   std::uint64_t seed = 1;
@@ -160,8 +162,10 @@ int run(const Options& options, Console& console) {
   check(options.heuristic);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const BuildOptions tree = with_heuristic(options.build, options.heuristic, scene);
-  const TimedBuild build = build_timed(context, scene, tree, {1, false}, console.progress());
+  const TimedBuild build =
+      tree_timed(context, scene, options.tree_file, with_heuristic(options.build, options.heuristic, scene),
+                 {1, false}, console.progress());
+  const BuildOptions& tree = build.options;
   Findings findings;
   check_tree(findings, options, tree, scene, build);
   if (findings.fault) {
@@ -186,6 +190,7 @@ int run(const Options& options, Console& console) {
   add_tree_options(document, context.device(), scene.triangles.size(), tree);
   add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
+  add_tree_file(document, build);
   add_findings(document, options, findings);
   console.print(document);
   console.print(facts_of(context.device(), scene, describe(options.heuristic, tree, scene), build, findings) +
@@ -212,6 +217,7 @@ void add_validate_command(CLI::App& program, OutputOptions& output, Action& acti
                     "build with the reference builder too, however large the scene");
   add_build_options(*command, options->build);
   add_heuristic_options(*command, options->heuristic);
+  add_tree_file_option(*command, options->tree_file);
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(

@@ -12,7 +12,7 @@ enum class ErrorCode {
   kInvalidArgument,  // an option or argument out of its documented range
   kIo,               // a file that cannot be opened, read or written
   kNoDevice,         // no OpenCL platform or device, or an unknown choice of one
-  kBadScene,         // input that is not a scene we can trace
+  kBadScene,         // input that is not a scene we can trace, or not a tree of it
   kOutOfMemory,      // a buffer that does not fit; the message names it and its size
   kDevice,           // an OpenCL call or a kernel build failed; the message carries the log
   kCancelled,        // the caller's progress function asked to stop

@@ -22,8 +22,12 @@ Bounds bounds_of(const Scene& scene) {
   return box;
 }
 
+std::uint64_t triangles_hash(std::span<const Triangle> triangles) {
+  return XXH3_64bits(triangles.data(), triangles.size_bytes());
+}
+
 std::string scene_hash(const Scene& scene) {
-  const auto value = XXH3_64bits(scene.triangles.data(), scene.triangles.size() * sizeof(Triangle));
+  const std::uint64_t value = triangles_hash(scene.triangles);
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
   return text;

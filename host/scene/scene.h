@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -88,5 +89,7 @@ struct Bounds {
 
 // 64-bit hash (XXH3) of everything that decides tree and rays: triangles, in order. 16 lower-case hex digits.
 [[nodiscard]] std::string scene_hash(const Scene& scene);
+// The same as a number.
+[[nodiscard]] std::uint64_t triangles_hash(std::span<const Triangle> triangles);
 
 }  // namespace gnomon

@@ -28,7 +28,10 @@ TEST_CASE("help and version are data, not errors") {
     CHECK(own.err.empty());
     CHECK_THAT(own.out, Contains("Examples:") && Contains("--json") && Contains("--quiet"));
   }
-  CHECK_THAT(help.out, Contains("Exit status: 0 ok, 1 failure, 2 wrong usage, 3 no device, 4 bad scene"));
+  CHECK_THAT(
+      help.out,
+      Contains(
+          "Exit status: 0 ok, 1 failure, 2 wrong usage, 3 no device, 4 bad scene, tree, ray or rows file"));
   CHECK_THAT(run({"trace", "--help"}).out, Contains("bounce") && Contains("parallel") && Contains("float32"));
   CHECK_THAT(run({"build", "--help"}).out, Contains("even over a picture's plane") && Contains("--light 0"));
   CHECK_THAT(run({"scene", "--help"}).out, Contains("atrium") && Contains("cottage-walls"));

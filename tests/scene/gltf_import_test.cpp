@@ -6,7 +6,7 @@
 #include "gltf_builder.h"
 
 using namespace gnomon_test;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using gnomon::Scene;
 using gnomon::Triangle;
 using Corner = std::tuple<float, float, float>;

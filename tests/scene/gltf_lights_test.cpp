@@ -5,7 +5,7 @@
 #include "gltf_builder.h"
 
 using namespace gnomon_test;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using gnomon::LightKind;
 using gnomon::Scene;
 using gnomon::Vec3;

@@ -6,8 +6,8 @@
 #include "gltf_builder.h"
 
 using namespace gnomon_test;
-using Catch::Matchers::Contains;
-using Catch::Matchers::StartsWith;
+using Catch::Contains;
+using Catch::StartsWith;
 using gnomon::import_scene;
 using gnomon::Scene;
 

@@ -6,8 +6,8 @@
 #include "gnomon/scene/obj_reader.h"
 
 using namespace gnomon_test;
-using Catch::Matchers::Contains;
-using Catch::Matchers::StartsWith;
+using Catch::Contains;
+using Catch::StartsWith;
 using gnomon::Scene;
 using gnomon::Triangle;
 using gnomon::Vec3;

@@ -8,8 +8,8 @@
 #include "gltf_builder.h"
 
 using namespace gnomon_test;
-using Catch::Matchers::Contains;
-using Catch::Matchers::StartsWith;
+using Catch::Contains;
+using Catch::StartsWith;
 using gnomon::fault_of;
 using gnomon::Scene;
 using gnomon::Triangle;

@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# Writes the tables of host/notes that come from stored rows, between their markers; the thesis' figures among them are
+# constants here. With --check it changes nothing and fails where a note is not what its rows give. Needs jq.
+#   note_tables.sh [--check]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+check=${1:-}
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+behind=0
+
+# fixed(2): two digits after the point, half up.
+common='
+def fixed($d): pow(10; $d) as $p | (. * $p + 0.5 | floor) as $i |
+  if $d == 0 then "\($i)" else "\($i / $p | floor).\("000\($i % $p)" | .[-$d:])" end;
+def line: "| " + join(" | ") + " |";
+'
+
+# table NOTE NAME ROWS JQ: the lines that the jq program makes of all rows, between "<!-- NAME begin -->" and its end.
+table() {
+  local note=host/notes/$1 name=$2
+  jq -rs "$common $4" "bench/results/$3" >"$scratch/table"
+  grep -qF "<!-- $name begin -->" "$note" && grep -qF "<!-- $name end -->" "$note" ||
+    { echo "$note has no markers for $name" >&2; exit 1; }
+  awk -v name="$name" -v table="$scratch/table" '
+    $0 == "<!-- " name " end -->" { inside = 0 }
+    !inside
+    $0 == "<!-- " name " begin -->" { inside = 1; while ((getline text < table) > 0) print text }' "$note" >"$scratch/note"
+  cmp -s "$scratch/note" "$note" && return
+  behind=1
+  if [ "$check" = --check ]; then
+    echo "$note is behind bench/results/$3: run bench/figures.sh" >&2
+    diff "$note" "$scratch/note" >&2 || true
+  else
+    cp "$scratch/note" "$note"
+  fi
+}
+
+# The newest rows, beside those of the commit before measures were swept on lanes.
+table heuristics.md measures heuristic.jsonl '
+  def of($commit; $scene; $measure):
+    map(select(.commit == $commit and .scene == $scene and .measure == $measure))[-1].ratio.median | fixed(2);
+  last.commit as $new | "3ea8d0d0e5e8" as $old | . as $rows |
+  (["rays", "city", "atrium", "before steps on lanes"] | line), "|---|---|---|---|",
+  (["parallel", "plane"], ["parallel, window", "plane, culled"], ["point, solid angle", "point, solid angle"],
+   ["point, solid angle, window", "point, solid angle, culled"],
+   ["point, near plane, window", "point, near plane, culled"],
+   ["point, yaw and pitch, window", "point, yaw and pitch, culled"] |
+   .[0] as $name | .[1] as $measure | $rows |
+   [$name, of($new; "city"; $measure), of($new; "atrium"; $measure),
+    "\(of($old; "city"; $measure)), \(of($old; "atrium"; $measure))"] | line)'
+
+table top-level.md "areas of a point" top_level.jsonl '
+  {"4": ["", "(0.74)"], "10": ["", "(1.25)"], "20": ["2.2", "3.9 (1.75)"], "40": ["", "(3.0)"], "80": ["", "(5.3)"]}
+    as $thesis | . as $rows |
+  (["areas", "list", "octree, level 7", "on the host", "thesis: list", "octree, level 7"] | line),
+  "|---|---|---|---|---|---|",
+  (4, 10, 20, 40, 80 | tostring as $n | . as $areas |
+   ($rows | map(select(.areas == $areas and .structure == "list"))[-1]) as $list |
+   ($rows | map(select(.areas == $areas and .max_level == 7))[-1]) as $octree |
+   "| \($n) | \($list.device_mqueries_per_s.median | fixed(1)) | " +
+   "\($octree.device_mqueries_per_s.median | fixed(1)) (\($octree.device_ratio_to_list.median | fixed(2))) | " +
+   "\($list.host_mqueries_per_s.median | fixed(1)), \($octree.host_mqueries_per_s.median | fixed(1)) " +
+   "(\($octree.host_ratio_to_list.median | fixed(2))) |" +
+   ($thesis[$n][0] | if . == "" then " | " else " \(.) | " end) + "\($thesis[$n][1]) |")'
+
+table top-level.md "octree levels" top_level.jsonl '
+  map(select(.areas == 20 and .structure != "bvh")) |
+  "| 20 areas, level | list | 4 | 5 | 6 | 7 | 8 | 9 |", "|---|---|---|---|---|---|---|---|",
+  (["millions of queries a second"] + map(.device_mqueries_per_s.median | fixed(1)) | line),
+  (["false candidates per true one"] + map(.false_per_true_candidate | fixed(2)) | line),
+  "| thesis: millions of queries a second | 2.2 | 8.1 | 7.3 | 6.1 | 3.9 | 2.6 | 1.9 |",
+  "| thesis: false candidates per true one | | 1.10 | 0.40 | 0.14 | 0.07 | 0.03 | 0.01 |"'
+
+# Rays and measure agree; the wide view of the cottage is apart.
+table reproduction.md predictions reproduce.jsonl '
+  def percent: (if . < 0 then 0 else . end) * 100 | fixed(1) + " %";
+  def noise: .real.standard_error / .real.mean;
+  map(select(.task == "prediction" and .rays == .measure)) |
+  def of($suffix; $wide): map(select((.rays | endswith($suffix)) and (.orientation == "130x45") == $wide));
+  . as $all |
+  (["rays", "mean error", "worst", "mean noise", "worst beyond 2 noise", "130 by 45, cottage"] | line),
+  "|---|---|---|---|---|---|",
+  (["parallel rays", "parallel"], ["yaw and pitch", "yaw and pitch"], ["near plane", "near plane"],
+   ["solid angle", "solid angle"] |
+   .[0] as $suffix | .[1] as $name | ($all | of($suffix; false)) as $rows | ($all | of($suffix; true)) as $wide |
+   "| \($name), \($rows | length)" + (if $name == "parallel" then " set-ups | " else " | " end) +
+   ([($rows | map(.error | fabs) | add / length), ($rows | map(.error | fabs) | max),
+     ($rows | map(noise) | add / length), ($rows | map((.error | fabs) - 2 * noise) | max) | percent] | join(" | ")) +
+   (if $wide == [] then " | |" else
+      " | \($wide[0].error | fabs | percent) (noise \($wide[0] | noise | percent)) |" end))'
+
+[ "$behind" = 0 ] || [ "$check" != --check ]

@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# Takes stored rows again, with the arguments they were taken with, and says what moved beyond its spread.
+#   rerun.sh [NAME...]     the files of bench/results to take again, without .jsonl; by default all (hours)
+#   rerun.sh --list        their names
+# New rows go to build/rows/NAME.jsonl. To keep them: cat build/rows/NAME.jsonl >> bench/results/NAME.jsonl, then
+# bench/figures.sh. Leave the machine alone meanwhile. GNOMON_DEVICE chooses another device. The thesis' set-ups, which
+# reproduce and exit_rule need, are named by THESIS_CONFIGS, THESIS_SCENES and THESIS_PUBLISHED.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+build=${BUILD:-build}
+gnomon() { "$build/bin/gnomon" "$@"; }
+beside_embree() { "$build/bench/gnomon_bench" "$@"; }
+
+take_accuracy() { "$build/bench/accuracy_bench"; }
+take_compact() {
+  beside_embree --scenes atrium,terrain,city,random --flavours wide,thread,compact --rounds 2 --ray-count 131072 \
+    --rays primary,bounce
+}
+take_exit_rule() {
+  "$build/bench/exit_rule_bench" "${THESIS_CONFIGS:?the set-ups, a JSON file}" "${THESIS_SCENES:?a folder}"
+}
+take_failure_map() { "$build/bench/failure_map_bench"; }
+take_heuristic() { "$build/bench/heuristic_bench"; }
+take_heuristic_seam() { "$build/bench/spine_bench" atrium 200000; }
+take_reproduce() {
+  gnomon reproduce --configs "${THESIS_CONFIGS:?the set-ups, a JSON file}" --scenes "${THESIS_SCENES:?a folder}" \
+    --published "${THESIS_PUBLISHED:?the published results, a CSV file}" --rows /dev/fd/3 3>&1 >/dev/null
+}
+take_scaling() {
+  "$build/bench/scaling_bench" units
+  "$build/bench/scaling_bench" sizes --scenes terrain,random --least 1000 --most 10000000
+}
+take_speed() {
+  local single=bounce,bounce-shuffled,random,shadow coherent=primary,shadow,sun-axis,sun-oblique
+  local flavours=wide,portable,packet,sorted builders=balanced,fast,best
+  beside_embree --scenes atrium,terrain,random --ray-count 131072 --rounds 5 --rays $single \
+    --flavours $flavours --builders $builders
+  beside_embree --scenes city --ray-count 32768 --rounds 5 --rays bounce,random --flavours $flavours \
+    --builders $builders
+  beside_embree --scenes atrium,terrain,random --ray-count 1048576 --rounds 5 --rays $coherent \
+    --flavours packet,wide --no-build
+  beside_embree --scenes city --ray-count 262144 --rounds 5 --rays $coherent --flavours packet,wide --no-build
+  beside_embree --scenes atrium,terrain,random,city --triangles 100000 --rounds 9 --ray-count 131072 \
+    --rays primary,bounce --flavours packet,wide --builders balanced,fast
+}
+take_spine() { "$build/bench/spine_bench"; }
+take_stability() {
+  gnomon stability --rows /dev/fd/3 3>&1 >/dev/null
+  gnomon stability --rays 1e8 --rows /dev/fd/3 3>&1 >/dev/null
+}
+take_stability_peer() { "$build/bench/stability_peer"; }
+take_top_level() { "$build/bench/top_level_bench"; }
+
+mapfile -t known < <(declare -F | sed -n 's/^declare -f take_//p' | sort)
+if [ "${1:-}" = --list ]; then
+  printf '%s\n' "${known[@]}"
+  exit
+fi
+names=("$@")
+[ ${#names[@]} -gt 0 ] || names=("${known[@]}")
+for name in "${names[@]}"; do
+  [[ " ${known[*]} " = *" $name "* ]] || { echo "no such rows: $name; rerun.sh --list names them" >&2; exit 2; }
+done
+
+[ -f "$build/CMakeCache.txt" ] || bash tests/install_packages.sh build bench
+cmake -S . -B "$build" -G Ninja -DGNOMON_BUILD_BENCH=ON >/dev/null
+cmake --build "$build" --parallel "$(nproc)"
+mkdir -p "$build/rows"
+for name in "${names[@]}"; do
+  echo "== $name" >&2
+  "take_$name" >"$build/rows/$name.partial"
+  mv "$build/rows/$name.partial" "$build/rows/$name.jsonl"
+  # 7: something moved, which is for people to read.
+  gnomon rows diff "bench/results/$name.jsonl" "$build/rows/$name.jsonl" || [ $? -eq 7 ]
+done

@@ -96,7 +96,8 @@ class Adviser {
   [[nodiscard]] std::string gain() const {
     const Spread all = gain_of(best_, kAllKinds);
     if (verdict_of(all) != Verdict::kFaster)
-      return best_ + " builds faster than " + kBaseline + "; it traces no faster.";
+      return best_ + " builds faster than " + kBaseline +
+             "; for tracing the rounds do not agree which is faster.";
     std::string out = best_ + " traces " + range(all) + " times as fast as " + kBaseline + " over all kinds";
     out += all.count > 1 ? ": the median of " + std::to_string(all.count) +
                                " paired rounds and their range, which holds the true median with " +
@@ -152,19 +153,27 @@ class Adviser {
       std::vector<std::string> kinds;
       for (const std::string& kind : kinds_of(device_))
         if (verdict_of(gain_of(best_, kind)) != Verdict::kFaster) kinds.push_back(kind);
-      out = kinds.empty() ? "It is faster in every round for every kind of rays here."
-                          : "It is no better than " + std::string(kBaseline) + " for " + list_text(kinds) +
-                                " rays: there the rounds do not agree that it is faster.";
+      if (kinds.empty()) {
+        out = "It is faster in every round for every kind of rays here.";
+      } else if (kinds.size() < kinds_of(device_).size()) {
+        out = "It is no better than " + std::string(kBaseline) + " for " + list_text(kinds) +
+              " rays: there the rounds do not agree that it is faster.";
+      }
     }
     std::vector<std::string> never;
     for (const MethodFacts& method : device_.methods) {
-      if (method.name == kBaseline || method.family == Family::kPeer || !may_replace(method)) continue;
+      if (method.name == kBaseline || method.name == best_ || method.family == Family::kPeer ||
+          !may_replace(method))
+        continue;
       bool faster = false;
       for (const std::string& kind : kinds_of(device_))
         faster = faster || verdict_of(gain_of(method.name, kind)) == Verdict::kFaster;
       if (!faster) never.push_back(method.name);
     }
-    if (!never.empty()) out += " No better for any kind: " + list_text(never) + ".";
+    if (!never.empty()) {
+      out += (out.empty() ? "" : " ") + std::string("Not faster than ") + kBaseline +
+             " for any kind: " + list_text(never) + ".";
+    }
     return out;
   }
 

@@ -66,15 +66,13 @@ std::vector<LogAxis::Tick> LogAxis::ticks() const {
   } else {
     const int first = static_cast<int>(std::floor(std::log10(lo_)));
     const int last = static_cast<int>(std::ceil(std::log10(hi_)));
-    const bool fine = std::log10(hi_ / lo_) < 2.2;
+    std::vector<double> steps{1.0};
+    if (hi_ / lo_ < 150.0) steps = {1.0, 2.0, 5.0};
+    if (hi_ / lo_ < 12.0) steps = {1.0, 1.5, 2.0, 3.0, 5.0, 7.0};
     const int stride = std::max(1, (last - first + kMostTicks - 1) / kMostTicks);
     for (int k = first; k <= last; ++k) {
       if (k % stride != 0) continue;
-      const double power = std::pow(10.0, k);
-      keep(power);
-      if (!fine) continue;
-      keep(2.0 * power);
-      keep(5.0 * power);
+      for (const double step : steps) keep(step * std::pow(10.0, k));
     }
   }
   std::vector<Tick> ticks;

@@ -73,7 +73,9 @@ struct RaysOf {
 // Of the scene's first camera; nothing for a scene without a triangle.
 [[nodiscard]] std::optional<RaysOf> first_camera(const Scene& scene);
 
-// Ours, kBaseline first. Context and scene must outlive them.
+// Ours, kBaseline first; the first kFirstMethods are those that matter most, and the last those that take
+// longest to enter. Context and scene must outlive them.
+inline constexpr int kFirstMethods = 3;
 [[nodiscard]] std::vector<Method> own_methods(const cl::Context& context, const Scene& scene);
 
 }  // namespace gnomon::compare

@@ -148,15 +148,6 @@ std::vector<Method> own_methods(const cl::Context& context, const Scene& scene) 
   list.add({"sah-best", Family::kSurface,
             "surface area heuristic over parts of large triangles, then optimised", "--builder best"},
            surface(Builder::kBest));
-  const auto light = first_light(scene);
-  if (light) list.add_published(*light, "light");
-  if (const auto camera = first_camera(scene)) {
-    list.add({"pah-near-plane@camera", Family::kRays, "projected areas for the rays of " + camera->name,
-              "--heuristic near-plane " + camera->options},
-             for_rays(*camera, true, AxisPolicy::kAll), camera);
-  }
-  list.add({"sah+lsph", Family::kSurface, "surface area heuristic, long sides divided first", "--axes lsph"},
-           surface(Builder::kBalanced, AxisPolicy::kLsph));
   BuildOptions cheap_triangles = surface(Builder::kBalanced);
   cheap_triangles.cost_triangle = 0.25F;
   list.add({"sah-balanced/cheap-triangles", Family::kSurface,
@@ -167,6 +158,15 @@ std::vector<Method> own_methods(const cl::Context& context, const Scene& scene) 
             "the tree of sah-balanced, hits decided by floats alone (gnomon trace --accuracy fast)",
             "--builder balanced"},
            surface(Builder::kBalanced), std::nullopt, Accuracy::kFast);
+  const auto light = first_light(scene);
+  if (light) list.add_published(*light, "light");
+  if (const auto camera = first_camera(scene)) {
+    list.add({"pah-near-plane@camera", Family::kRays, "projected areas for the rays of " + camera->name,
+              "--heuristic near-plane " + camera->options},
+             for_rays(*camera, true, AxisPolicy::kAll), camera);
+  }
+  list.add({"sah+lsph", Family::kSurface, "surface area heuristic, long sides divided first", "--axes lsph"},
+           surface(Builder::kBalanced, AxisPolicy::kLsph));
   return list.take();
 }
 

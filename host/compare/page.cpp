@@ -58,7 +58,7 @@ class DevicePage {
     const std::vector<Chart> charts = charts_of(report_, device_);
     std::string out;
     if (std::any_of(charts.begin(), charts.end(), [](const Chart& chart) { return chart.moves; })) {
-      out += "<h2>Time, accuracy and memory</h2>\n" + control() + "<div class=\"charts\">\n";
+      out += "<h2>Time, accuracy and memory</h2>\n" + control() + "<div class=\"charts two\">\n";
       for (const Chart& chart : charts)
         if (chart.moves) out += figure(chart);
       out += "</div>\n";
@@ -157,7 +157,9 @@ class DevicePage {
            "heuristics of one source of rays, diamonds for mixtures, triangles for peers. Times are medians, "
            "of " +
            (report_.clock == "cpu" ? "processor time of all threads" : "waiting time") +
-           "; a ray's is the mean over the kinds.</p>\n";
+           "; a ray's is the mean over the kinds. Wrong: a hit lost, a false one, one more than 4 ulp off, "
+           "or one on a "
+           "triangle that is not there, against exact arithmetic.</p>\n";
   }
 
   [[nodiscard]] std::string pictures() const {

@@ -50,7 +50,7 @@ std::string color_of(std::size_t index) {
 double legend(Svg& svg, const std::vector<std::string>& names, double y) {
   double x = 8.0;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const double width = 24.0 + 7.2 * static_cast<double>(names[i].size());
+    const double width = 28.0 + 7.6 * static_cast<double>(names[i].size());
     if (x > 8.0 && x + width > kChartWidth) {
       x = 8.0;
       y += 18.0;

@@ -19,7 +19,7 @@ constexpr double kBuildWeight = 3.0;
 constexpr double kTraceWeight = 2.0;  // each kind
 constexpr double kJudgeWeight = 1.0;  // each kind
 constexpr double kPictureWeight = 1.0;
-constexpr double kFirstBuildShare = 0.5;
+constexpr double kFirstBuildShare = 0.6;
 
 struct Entered {
   const Method* method;

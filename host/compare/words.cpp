@@ -23,7 +23,9 @@ std::string significant(double value, int digits) {
                                             std::chars_format::scientific, std::max(0, digits - 1));
     return {text.data(), end};
   }
-  const int before = static_cast<int>(std::floor(std::log10(magnitude))) + 1;
+  // Of the number as rounded: 0.9999 has one digit before the point when three are kept.
+  const double rounded = magnitude * (1.0 + 0.5 * std::pow(10.0, -digits));
+  const int before = static_cast<int>(std::floor(std::log10(rounded))) + 1;
   return fixed(value, std::max(0, digits - before));
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 std::vector<std::string> command(const std::string& page, std::vector<std::string> more = {}) {
   std::vector<std::string> words{"compare",
-                                 "gen:cottage:3k",
+                                 "gen:cottage:7k",
                                  "--methods",
                                  "sah,pah-window,embree",
                                  "--rays",
@@ -170,9 +170,9 @@ TEST_CASE("where time is short less is measured, and the page says what was left
 
 TEST_CASE("a file of rays is a kind of rays") {
   const Folder folder;
-  REQUIRE(run({"trace", "gen:cottage:3k", "--count", "1000", "--rays-out", folder.file("my.rays"), "--quiet"})
+  REQUIRE(run({"trace", "gen:cottage:7k", "--count", "1000", "--rays-out", folder.file("my.rays"), "--quiet"})
               .status == 0);
-  const auto outcome = run({"compare", "gen:cottage:3k", "--methods", "sah-fast", "--rays",
+  const auto outcome = run({"compare", "gen:cottage:7k", "--methods", "sah-fast", "--rays",
                             folder.file("my.rays"), "--rounds", "1", "-o", folder.file("r.html"), "--quiet"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.status == 0);

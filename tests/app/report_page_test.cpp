@@ -134,7 +134,7 @@ void check_all(const json& seen) {
 
 TEST_CASE("the page works in a browser: wide, on a phone, and in the dark") {
   const Folder folder;
-  const auto outcome = program::run({"compare", "gen:cottage:3k", "--methods", "sah,pah-window,embree",
+  const auto outcome = program::run({"compare", "gen:cottage:7k", "--methods", "sah,pah-window,embree",
                                      "--rays", "primary,shadow,light", "--ray-count", "2k", "--judged-rays",
                                      "300", "--rounds", "3", "-o", folder.file("r.html"), "--quiet"});
   CAPTURE(outcome.err);

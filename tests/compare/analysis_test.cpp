@@ -115,7 +115,7 @@ TEST_CASE("advice names who is fastest from how many rays on, and never one with
   CHECK_THAT(advice.cost, Contains("4.00 times the build time (4.00 s against 1.00 s)") &&
                               Contains("2.00 times the memory (2.00 MiB against 1.00 MiB)") &&
                               Contains("after 2000 rays"));
-  CHECK_THAT(advice.no_gain, Contains("No better for any kind: sah-fast."));
+  CHECK_THAT(advice.no_gain, Contains("Not faster than sah-balanced for any kind: sah-fast."));
   CHECK_THAT(advice.accuracy, Contains("0 of 200 judged rays wrong") && Contains("embree-default 4 of 200"));
 }
 

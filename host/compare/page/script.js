@@ -9,7 +9,8 @@
   function significant(value, digits) {
     if (value === 0) return '0';
     if (value < 1e-3 || value >= 1e6) return value.toExponential(digits - 1);
-    return value.toFixed(Math.max(0, digits - Math.floor(Math.log10(value)) - 1));
+    const rounded = value * (1 + 0.5 * 10 ** -digits);
+    return value.toFixed(Math.max(0, digits - Math.floor(Math.log10(rounded)) - 1));
   }
   function time_text(seconds) {
     for (const [scale, unit] of [[1, ' s'], [1e-3, ' ms'], [1e-6, ' µs']])

@@ -11,6 +11,7 @@
 #include "device_choice.h"
 #include "document.h"
 #include "embree_methods.h"
+#include "exit_status.h"
 #include "gnomon/compare/analysis.h"
 #include "gnomon/compare/page.h"
 #include "gnomon/compare/report_json.h"
@@ -188,7 +189,7 @@ class Comparison {
     for (const cl::DeviceInfo& info : devices_) run_on(info, scene, share);
     const std::size_t charts = files_.write_all(report_);
     tell(charts);
-    return 0;
+    return judge_ours();
   }
 
  private:
@@ -224,6 +225,23 @@ class Comparison {
     compare::run_device(
         context, scene, methods, run, report_.devices[place], [this] { files_.keep_rows(report_); },
         console_.progress());
+  }
+
+  // 6 where a method that promises exact hits has wrong ones.
+  int judge_ours() {
+    int status = kOk;
+    for (const compare::DeviceReport& device : report_.devices) {
+      for (const compare::AccuracyRow& row : device.accuracies) {
+        const bool promised =
+            std::any_of(device.methods.begin(), device.methods.end(),
+                        [&](const auto& method) { return method.name == row.method && method.exact; });
+        if (!promised || row.wrong() == 0) continue;
+        console_.error(device.name + ", " + row.method + ": " + std::to_string(row.wrong()) + " of " +
+                       std::to_string(row.judged) + " " + row.kind + " rays have wrong answers");
+        status = kMismatch;
+      }
+    }
+    return status;
   }
 
   void tell(std::size_t charts) {
@@ -271,7 +289,10 @@ const char* const kFooter =
     "answers\n"
     "against brute force in double precision, and says in plain words which method to use, what it gains and "
     "costs,\n"
-    "and where it is no better. Beside the page: its rows as .json and .csv, its charts as .svg.\n"
+    "and where it is no better. Beside the page: its rows as .json and .csv, its charts as .svg. Exit status "
+    "6 where a "
+    "method\n"
+    "of ours that promises exact hits has wrong ones.\n"
     "\n"
     "Kinds of rays: primary, bounce, shadow, random, parallel (gnomon trace --help), light (of the scene's "
     "first light,\n"

@@ -60,8 +60,10 @@ class List {
   void add(const MethodFacts& facts, const BuildOptions& build,
            const std::optional<RaysOf>& rays = std::nullopt, Accuracy accuracy = Accuracy::kWatertight) {
     OwnMethod own{build, rays, accuracy};
+    MethodFacts own_facts = facts;
+    own_facts.exact = accuracy == Accuracy::kWatertight;
     methods_.push_back(
-        {facts, [&context = context_, &scene = scene_, own] { return enter_own(context, scene, own); }});
+        {own_facts, [&context = context_, &scene = scene_, own] { return enter_own(context, scene, own); }});
   }
 
   // The published heuristics for these rays, each with its axis policies, and a mixture with surface area.

@@ -58,12 +58,13 @@ class DevicePage {
     const std::vector<Chart> charts = charts_of(report_, device_);
     std::string out;
     if (std::any_of(charts.begin(), charts.end(), [](const Chart& chart) { return chart.moves; })) {
-      out += "<h2>Time, accuracy and memory</h2>\n" + control() + "<div class=\"charts two\">\n";
+      out += "<h2>Time, accuracy and memory</h2>\n<div>\n" + control() + "<div class=\"charts two\">\n";
       for (const Chart& chart : charts)
         if (chart.moves) out += figure(chart);
-      out += "</div>\n";
+      out += "</div>\n" + table() + "</div>\n";
+    } else {
+      out += table();
     }
-    out += table();
     out += "<h2>What each method gains and does</h2>\n<div class=\"charts\">\n";
     for (const Chart& chart : charts)
       if (!chart.moves) out += figure(chart);
@@ -199,6 +200,35 @@ class DevicePage {
   const DeviceReport& device_;
 };
 
+// One method on every device: what a portable kernel is worth where.
+std::string devices_table(const Report& report) {
+  if (report.devices.size() < 2) return "";
+  const std::vector<std::string> kinds = kinds_of(report.devices.front());
+  std::string head = "<th class=\"name\">device</th><th>build</th>";
+  for (const std::string& kind : kinds) head += "<th>" + escaped(kind) + "</th>";
+  std::string rows;
+  for (const DeviceReport& device : report.devices) {
+    rows += "<tr>" + cell(escaped(device.name) + "<small>" +
+                              escaped(device.platform + ", driver " + device.driver) + "</small>",
+                          "name");
+    const auto lines = lines_of(device, kAllKinds, report.clock);
+    const auto base =
+        std::find_if(lines.begin(), lines.end(), [](const Line& l) { return l.method == kBaseline; });
+    rows += cell(base == lines.end() ? "–" : time_text(base->build_s));
+    for (const std::string& kind : kinds) {
+      std::string speed = "–";
+      for (const Line& line : lines_of(device, kind, report.clock))
+        if (line.method == kBaseline && line.ray_s > 0.0) speed = significant(1e-6 / line.ray_s);
+      rows += cell(speed);
+    }
+    rows += cell(escaped(advise(report, device).best)) + "</tr>\n";
+  }
+  return "<h2>Over devices</h2>\n<div class=\"wide\"><table>\n<caption>" + std::string(kBaseline) +
+         ": build time, and millions of rays a second by kind; last, what to use for many "
+         "rays</caption>\n<thead><tr>" +
+         head + "<th>use</th></tr></thead>\n<tbody>\n" + rows + "</tbody>\n</table></div>\n";
+}
+
 // The rows, without the pictures, which are on the page already.
 std::string data_of(const Report& report) {
   Report bare = report;
@@ -240,6 +270,7 @@ std::string report_page(const Report& report) {
     out +=
         "<p class=\"warn\">This report is not complete: it was interrupted. The same command goes on from "
         "what is there.</p>\n";
+  out += devices_table(report);
   Json data{{"baseline", kBaseline}, {"devices", Json::array()}};
   for (std::size_t i = 0; i < report.devices.size(); ++i) {
     const DevicePage page(report, report.devices[i]);

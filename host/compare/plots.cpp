@@ -15,7 +15,7 @@ constexpr double kLeft = 52.0;
 constexpr double kRight = kChartWidth - 12.0;
 constexpr double kTop = 30.0;
 constexpr double kScatterBottom = 250.0;
-constexpr double kZeroRow = 34.0;
+constexpr double kZeroRow = 62.0;
 constexpr double kLetterRadius = 8.0;
 constexpr double kLetterGap = 16.5;
 
@@ -87,7 +87,7 @@ std::vector<double> values_of(const Scatter& s, double Scatter::Dot::*field) {
 
 }  // namespace
 
-std::vector<Place> place_letters(const std::vector<Place>& points, const Place& lo, const Place& hi) {
+std::vector<Place> place_letters(const std::vector<Place>& points, const Frame& frame) {
   std::vector<Place> placed;
   for (const Place& point : points) {
     Place best = point;
@@ -97,7 +97,8 @@ std::vector<Place> place_letters(const std::vector<Place>& points, const Place& 
       const double angle = 0.25 * 3.14159265358979 * step + 0.4 * ring;
       const Place at{point.x + kLetterGap * ring * std::cos(angle),
                      point.y - kLetterGap * ring * std::sin(angle)};
-      const bool inside = at.x >= lo.x && at.x <= hi.x && at.y >= lo.y && at.y <= hi.y;
+      const bool inside =
+          at.x >= frame.left && at.x <= frame.right && at.y >= point.top && at.y <= frame.bottom;
       const bool free = std::none_of(placed.begin(), placed.end(), [&](const Place& other) {
         return std::hypot(other.x - at.x, other.y - at.y) < kLetterGap;
       });
@@ -141,15 +142,16 @@ Svg draw(const Scatter& s, std::string* attributes) {
   std::vector<Place> at;
   std::vector<Point> points;
   for (const Scatter::Dot& dot : s.dots) {
-    at.push_back({x.at(dot.x), dot.y > 0.0 ? y.at(dot.y) : zero});
+    at.push_back(dot.y > 0.0 ? Place{x.at(dot.x), y.at(dot.y), kTop + 6.0}
+                             : Place{x.at(dot.x), zero, kScatterBottom + 10.0});
     points.push_back({dot.x, dot.y});
   }
   if (s.front) svg.path(front_path(at, pareto_front(points), kRight, kTop), "front");
-  const auto letters = place_letters(at, {kLeft + 4.0, kTop + 6.0}, {kRight - 4.0, bottom - 6.0});
+  const auto letters = place_letters(at, {kLeft + 4.0, kRight - 4.0, bottom - 8.0});
   for (std::size_t i = 0; i < at.size(); ++i) {
     const Scatter::Dot& dot = s.dots[i];
     svg.raw("<g class=\"dot " + color_of(dot.group) + "\" data-letter=\"" + dot.letter + "\"" +
-            data("y", at[i].y) + ">");
+            data("y", at[i].y) + data("top", at[i].top) + ">");
     svg.line(at[i].x, at[i].y, letters[i].x, letters[i].y, "lead");
     svg.mark(at[i].x, at[i].y, 2.0, 0, "true");
     svg.raw("<g transform=\"translate(" + coordinate(letters[i].x) + " " + coordinate(letters[i].y) + ")\">");

@@ -13,14 +13,17 @@ namespace gnomon::compare {
 
 inline constexpr double kChartWidth = 400.0;
 
-// Where letters go that would cover each other: beside their point, joined to it by a line. The page's script
-// does the same.
+// Where letters go that would cover each other: beside their point, joined to it by a line, and inside
+// left..right and top..bottom. The page's script does the same.
 struct Place {
   double x = 0.0;
   double y = 0.0;
+  double top = 0.0;  // its letter goes no higher
 };
-[[nodiscard]] std::vector<Place> place_letters(const std::vector<Place>& points, const Place& lo,
-                                               const Place& hi);
+struct Frame {
+  double left, right, bottom;
+};
+[[nodiscard]] std::vector<Place> place_letters(const std::vector<Place>& points, const Frame& frame);
 
 // Points with a letter each, both axes logarithmic.
 struct Scatter {

@@ -29,6 +29,7 @@ struct MethodFacts {
   Family family = Family::kSurface;
   std::string what;     // what it is, in a sentence
   std::string options;  // that build it with `gnomon build`; empty for peers
+  bool exact = false;   // promises that no hit is lost or false
   bool operator==(const MethodFacts&) const = default;
 };
 

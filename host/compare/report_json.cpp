@@ -167,8 +167,11 @@ Json device_json(const Report& report, const DeviceReport& device) {
            {"complete", device.complete}, {"done", device.done}};
   out["methods"] = Json::array();
   for (const MethodFacts& m : device.methods)
-    out["methods"].push_back(
-        {{"name", m.name}, {"family", to_string(m.family)}, {"what", m.what}, {"options", m.options}});
+    out["methods"].push_back({{"name", m.name},
+                              {"family", to_string(m.family)},
+                              {"what", m.what},
+                              {"options", m.options},
+                              {"exact", m.exact}});
   out["rows"] = Rows(report, device).all();
   Json png = Json::object();
   for (const auto& [name, bytes] : device.pictures.png) png[name] = to_base64(bytes);
@@ -197,7 +200,8 @@ DeviceReport read_device(const Json& in) {
   device.complete = in.at("complete");
   device.done = in.at("done").get<std::vector<std::string>>();
   for (const Json& m : in.at("methods"))
-    device.methods.push_back({m.at("name"), family_from(m.at("family")), m.at("what"), m.at("options")});
+    device.methods.push_back(
+        {m.at("name"), family_from(m.at("family")), m.at("what"), m.at("options"), m.at("exact")});
   for (const Json& row : in.at("rows")) read_row(row, device);
   const Json& pictures = in.at("pictures");
   device.pictures.width = pictures.at("width");

@@ -15,7 +15,7 @@ namespace gnomon::compare {
 namespace {
 
 // What is left of the time goes to these, in this order, by weight.
-constexpr double kBuildWeight = 3.0;
+constexpr double kBuildWeight = 6.0;
 constexpr double kTraceWeight = 2.0;  // each kind
 constexpr double kJudgeWeight = 1.0;  // each kind
 constexpr double kPictureWeight = 1.0;
@@ -191,9 +191,17 @@ class Run {
                          {}});
     run_contest(contest, options_.rounds, deadline(kBuildWeight, kBuildWeight + weights_from(0)), wall_now,
                 [&](int done, int most) { tell("builds", static_cast<double>(done) / most); });
+    say_rounds("builds", contest);
     for (std::size_t i = 0; i < entered_.size(); ++i)
       row_of(report_.builds, entered_[i].method->facts.name).rounds = contest[i].rounds;
     finish("builds");
+  }
+
+  void say_rounds(const std::string& step, const std::vector<Contestant>& contest) {
+    const std::size_t rounds = contest.front().rounds.wall_s.size();
+    if (rounds < static_cast<std::size_t>(options_.rounds))
+      leave_out("", step,
+                std::to_string(rounds) + " rounds instead of " + std::to_string(options_.rounds) + budget());
   }
 
   void trace(const std::string& kind) {
@@ -218,10 +226,7 @@ class Run {
       contest.push_back({[&entered, &batch] { entered.entrant->trace(batch); }, {}});
     run_contest(contest, options_.rounds, until, wall_now,
                 [&](int done, int most) { tell(step, static_cast<double>(done) / most); });
-    if (!contest.empty() && contest.front().rounds.wall_s.size() < std::size_t(options_.rounds))
-      leave_out("", step,
-                std::to_string(contest.front().rounds.wall_s.size()) + " rounds instead of " +
-                    std::to_string(options_.rounds) + budget());
+    say_rounds(step, contest);
     std::vector<TraceRow> rows;
     for (std::size_t i = 0; i < entered_.size(); ++i) {
       TraceRow row;

@@ -144,8 +144,8 @@ TEST_CASE("a chart's file stands alone and has both colour schemes") {
 }
 
 TEST_CASE("letters never cover each other, and a lone one stays on its point") {
-  std::vector<Place> points(20, {200.0, 100.0});
-  const auto letters = place_letters(points, {50.0, 30.0}, {390.0, 250.0});
+  std::vector<Place> points(20, {200.0, 100.0, 30.0});
+  const auto letters = place_letters(points, {50.0, 390.0, 250.0});
   CHECK(letters[0].x == 200.0);
   CHECK(letters[0].y == 100.0);
   for (std::size_t i = 0; i < letters.size(); ++i) {

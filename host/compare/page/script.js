@@ -24,7 +24,7 @@
   }
 
   // As plots.cpp does it.
-  function place_letters(points, lo, hi) {
+  function place_letters(points, frame) {
     const placed = [];
     for (const point of points) {
       let best = point;
@@ -32,7 +32,7 @@
         const ring = Math.floor((step + 7) / 8);
         const angle = 0.25 * Math.PI * step + 0.4 * ring;
         const at = {x: point.x + gap * ring * Math.cos(angle), y: point.y - gap * ring * Math.sin(angle)};
-        const inside = at.x >= lo.x && at.x <= hi.x && at.y >= lo.y && at.y <= hi.y;
+        const inside = at.x >= frame.left && at.x <= frame.right && at.y >= point.top && at.y <= frame.bottom;
         if (step !== 0 && !inside) continue;
         if (placed.some(other => Math.hypot(other.x - at.x, other.y - at.y) < gap)) continue;
         best = at;
@@ -50,8 +50,9 @@
     const points = dots.map(dot => ({
       x: left + (right - left) * (Math.log10(times.get(dot.dataset.letter)) - lo) / (hi - lo),
       y: parseFloat(dot.dataset.y),
+      top: parseFloat(dot.dataset.top),
     }));
-    const letters = place_letters(points, {x: left + 4, y: top + 6}, {x: right - 4, y: bottom - 6});
+    const letters = place_letters(points, {left: left + 4, right: right - 4, bottom: bottom - 8});
     dots.forEach((dot, i) => {
       const [lead, mark, letter] = dot.children;
       const {x, y} = points[i];

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The main job on a fresh Debian 12: installs what is missing, builds the program, makes a picture of the atrium through a
-# tree built on the default OpenCL device, checks the answers, and prints where the pictures are and what it cost.
+# tree built on the default OpenCL device, checks the answers, sets every method beside the others, and prints where the
+# pictures and the report are and what it cost.
 # Everything it makes is in build/demo/. GNOMON_DEVICE chooses another device; SCENE another scene, a file or gen:NAME.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -21,6 +22,9 @@ done
 # Exits 6 for a mismatch, which ends the demo here.
 $gnomon validate "$scene" --json >$out/validate.json
 
+# Which method to use for this scene on this device, and why: a page to open in a browser.
+$gnomon compare "$scene" --time 2m -o $out/report.html >$out/advice.txt
+
 row() { printf '%-18s %s\n' "$1" "$2"; }
 tree=$(jq -er '"device\t\(.device), driver \(.driver)",
   "triangles\t\(.triangles)",
@@ -38,3 +42,6 @@ judged=$(jq -er '"\(.mismatches) in \(.rays_judged) rays judged"' $out/validate.
 row "mismatches" "$judged"
 row "picture" "$PWD/$out/atrium.png"
 row "boxes per pixel" "$PWD/$out/atrium-boxes.png"
+row "report" "$PWD/$out/report.html"
+echo
+head -n 5 $out/advice.txt

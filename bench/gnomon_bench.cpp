@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "contest.h"
-#include "embree_peer.h"
+#include "gnomon/peers/embree_peer.h"
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/trace_device.h"
 #include "gnomon/scene/generators.h"
@@ -27,6 +27,7 @@
 namespace {
 
 using namespace gnomon::bench;
+using namespace gnomon::peers;
 using gnomon::Hit;
 using gnomon::Ray;
 

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "embree_peer.h"
+#include "gnomon/peers/embree_peer.h"
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/trace_device.h"
 #include "gnomon/scene/generators.h"
@@ -28,8 +28,8 @@ namespace {
 
 using gnomon::Hit;
 using gnomon::Ray;
-using gnomon::bench::EmbreeQuality;
-using gnomon::bench::EmbreeScene;
+using gnomon::peers::EmbreeQuality;
+using gnomon::peers::EmbreeScene;
 using gnomon::bench::json;
 using gnomon::bench::measure;
 using gnomon::bench::Paired;

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "embree_peer.h"
+#include "gnomon/peers/embree_peer.h"
 #include "gnomon/device/trace_device.h"
 #include "gnomon/stability/catalogue.h"
 #include "gnomon_commit.h"
@@ -53,7 +53,7 @@ void by_gnomon(const gnomon::cl::Context& context, const Specimen& specimen, Ora
 }
 
 void by_embree(const Specimen& specimen, bool robust, OracleReport& sum) {
-  gnomon::bench::EmbreeScene scene(specimen.triangles, gnomon::bench::EmbreeQuality::kMedium, robust);
+  gnomon::peers::EmbreeScene scene(specimen.triangles, gnomon::peers::EmbreeQuality::kMedium, robust);
   scene.build();
   std::vector<GnHit> hits(specimen.rays.size());
   std::vector<std::uint32_t> any(specimen.rays.size());

@@ -10,7 +10,7 @@ set -euo pipefail
 declare -A packages=(
   [build]="g++ cmake ninja-build pkg-config ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd libtinygltf-dev
     libtinyobjloader-dev libcli11-dev nlohmann-json3-dev libstb-dev libxxhash-dev libglm-dev"
-  [tests]="catch2 libboost-dev mesa-opencl-icd oclgrind help2man jq"
+  [tests]="catch2 libboost-dev mesa-opencl-icd oclgrind help2man jq chromium"
   [bench]="libembree-dev libbenchmark-dev"
   [demo]="jq"
 )

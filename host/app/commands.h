@@ -13,6 +13,7 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
 void add_trace_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_validate_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_render_command(CLI::App& program, OutputOptions& output, Action& action);
+void add_compare_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_stability_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_reproduce_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_rows_command(CLI::App& program, OutputOptions& output, Action& action);

@@ -88,6 +88,7 @@ int run(int argc, char** argv) {
   add_trace_command(program, output, action);
   add_validate_command(program, output, action);
   add_render_command(program, output, action);
+  add_compare_command(program, output, action);
   add_stability_command(program, output, action);
   add_reproduce_command(program, output, action);
   add_rows_command(program, output, action);

@@ -1,9 +1,11 @@
 // Embree 3.13 as the peer: the same triangles, rays and answers as ours, in the calls and modes worth
-// comparing with. Not for timing (paired.h). Feeds spine_bench and gnomon_bench.
+// comparing with. Not for timing (paired.h). Feeds benches and
+// gnomon compare.
 #pragma once
 
 #include <embree3/rtcore.h>
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -12,7 +14,7 @@
 #include "gnomon/scene/ray_set.h"
 #include "gnomon/scene/scene.h"
 
-namespace gnomon::bench {
+namespace gnomon::peers {
 
 enum class EmbreeQuality { kLow, kMedium, kHigh };
 [[nodiscard]] const char* to_string(EmbreeQuality quality);
@@ -38,6 +40,9 @@ class EmbreeScene {
   void closest16(std::span<const Ray> rays, std::span<Hit> hits) const;
   void any16(std::span<const Ray> rays, std::span<std::uint32_t> occluded) const;
 
+  // Held by Embree for the scene as built: nodes, triangles and its copy of the corners.
+  [[nodiscard]] std::int64_t bytes() const { return bytes_; }
+
   [[nodiscard]] std::string name() const;  // "MEDIUM", "MEDIUM ROBUST" ...
 
  private:
@@ -48,8 +53,9 @@ class EmbreeScene {
   EmbreeQuality quality_;
   bool robust_;
   unsigned threads_;
+  std::atomic<std::int64_t> bytes_{0};
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
 };
 
-}  // namespace gnomon::bench
+}  // namespace gnomon::peers

@@ -1,9 +1,9 @@
-#include "embree_peer.h"
+#include "gnomon/peers/embree_peer.h"
 
 #include <algorithm>
 #include <thread>
 
-namespace gnomon::bench {
+namespace gnomon::peers {
 namespace {
 
 RTCBuildQuality rtc_quality(EmbreeQuality quality) {
@@ -79,6 +79,13 @@ EmbreeScene::EmbreeScene(std::span<const GnTriangle> triangles, EmbreeQuality qu
                          unsigned threads)
     : triangles_(triangles), quality_(quality), robust_(robust), threads_(threads) {
   device_ = rtcNewDevice(("set_affinity=0,threads=" + std::to_string(threads)).c_str());
+  rtcSetDeviceMemoryMonitorFunction(
+      device_,
+      [](void* bytes, std::int64_t change, bool) {
+        *static_cast<std::atomic<std::int64_t>*>(bytes) += change;
+        return true;
+      },
+      &bytes_);
 }
 
 EmbreeScene::~EmbreeScene() {
@@ -182,4 +189,4 @@ void EmbreeScene::any16(std::span<const Ray> rays, std::span<std::uint32_t> occl
   });
 }
 
-}  // namespace gnomon::bench
+}  // namespace gnomon::peers

@@ -1,0 +1,28 @@
+// Timing several ways to do the same work: rounds in which each runs once, next to the others, in an order
+// that turns with the rounds. Feeds run_device.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "gnomon/compare/report.h"
+
+namespace gnomon::compare {
+
+struct Contestant {
+  std::function<void()> work;
+  Rounds rounds;
+};
+
+// Seconds since some start. For contests that must end in time; tests bring their own.
+using Clock = std::function<double()>;
+[[nodiscard]] double wall_now();
+
+// Up to `most` rounds, at least one: none begins when its end, as the longest before it tells, would lie
+// after `deadline` of `now`. Contestants have run before, once at least: there is no round to warm up.
+// after_round(done, most) may throw.
+void run_contest(std::span<Contestant> contestants, int most, double deadline, const Clock& now,
+                 const std::function<void(int, int)>& after_round = {});
+
+}  // namespace gnomon::compare

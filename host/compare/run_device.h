@@ -1,0 +1,43 @@
+// Measures methods on one device and scene: builds, traces, judges, predicts and draws. Never prints. What is
+// finished is in the report at any moment, so that a run that ends early leaves rows, and another goes on
+// from them. Feeds the command line and benches.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "gnomon/compare/method.h"
+#include "gnomon/compare/report.h"
+
+namespace gnomon::compare {
+
+struct RunOptions {
+  std::vector<std::string> kinds = default_kinds();
+  std::vector<std::string> methods;   // names, or beginnings of names; empty: all. kBaseline always runs
+  std::uint64_t ray_count = 65'536;   // of each kind at most
+  std::uint64_t judged_rays = 2'000;  // of each kind at most
+  std::uint64_t predicted_rays = 500;
+  std::uint64_t seed = 1;
+  int rounds = 7;
+  double seconds = 150.0;  // for this device; see run_device
+  std::uint32_t picture_width = 320;
+  std::uint32_t picture_height = 180;
+
+  // Throws Error{kInvalidArgument} naming the option, its value and its range.
+  void check() const;
+};
+
+// Fills `report`, whose finished steps it passes over. The budget: a method whose first build cannot end in
+// the first half of it, as far as earlier ones tell, is left out; then builds, kinds of rays, judging and
+// pictures share what is left, with fewer rays and rounds where it is short, but never less than one round of
+// kMinRays rays. What was left out is in the report. after_step: called whenever a step is finished and the
+// report is worth keeping. A method that fails is left out with its error; kBaseline's error is thrown.
+// Throws Error{kCancelled} as `progress` asks.
+void run_device(const cl::Context& context, const Scene& scene, const std::vector<Method>& methods,
+                const RunOptions& options, DeviceReport& report, const std::function<void()>& after_step,
+                const Progress& progress);
+
+inline constexpr std::uint64_t kMinRays = 1024;
+
+}  // namespace gnomon::compare

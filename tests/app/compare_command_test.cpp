@@ -1,0 +1,204 @@
+// gnomon compare from end to end on tiny scenes: rows, page, time, Ctrl-C and going on.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "run_program.h"
+
+using Catch::Contains;
+using nlohmann::json;
+using program::Folder;
+using program::run;
+
+namespace {
+
+std::vector<std::string> command(const std::string& page, std::vector<std::string> more = {}) {
+  std::vector<std::string> words{"compare",
+                                 "gen:cottage:7k",
+                                 "--methods",
+                                 "sah,pah-window,embree",
+                                 "--rays",
+                                 "primary,shadow,light",
+                                 "--ray-count",
+                                 "2k",
+                                 "--judged-rays",
+                                 "300",
+                                 "--rounds",
+                                 "3",
+                                 "-o",
+                                 page};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+std::vector<json> rows_of(const json& report, const std::string& task) {
+  std::vector<json> rows;
+  for (const json& row : report.at("devices").at(0).at("rows"))
+    if (row.at("task") == task) rows.push_back(row);
+  return rows;
+}
+
+json read_report(const Folder& folder) {
+  return json::parse(program::read_text(folder.file("r.json")));
+}
+
+}  // namespace
+
+TEST_CASE("compare measures every method on the same rays and writes page, rows and charts") {
+  const Folder folder;
+  const auto outcome = run(command(folder.file("r.html"), {"--json", "--quiet"}));
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.status == 0);
+  const json document = json::parse(outcome.out);
+  REQUIRE(document.at("devices").at(0).at("advice").at(0).get<std::string>().size() > 20);
+  const json report = read_report(folder);
+  REQUIRE(report.at("schema") == 1);
+  REQUIRE(report.at("complete") == true);
+
+  std::set<std::string> methods;
+  for (const json& row : rows_of(report, "build")) {
+    CAPTURE(row.dump());
+    methods.insert(row.at("method"));
+    REQUIRE(row.at("wall_s").size() == 3);
+    REQUIRE(row.at("bytes") > 0);
+  }
+  for (const char* name :
+       {"sah-balanced", "sah-fast", "sah-best", "pah-window@light", "pah-window+spfh@light",
+        "pah-window+lsph@light", "pah-window+sah@light", "sah-balanced/fast-hits"}) {
+    CAPTURE(name);
+    REQUIRE(methods.contains(name));
+  }
+  REQUIRE_FALSE(methods.contains("pah-near-plane@camera"));  // not asked for
+
+  const auto traces = rows_of(report, "trace");
+  REQUIRE(traces.size() == methods.size() * 3);
+  for (const json& row : traces) {
+    CAPTURE(row.dump());
+    REQUIRE(row.at("wall_s").size() == 3);
+    REQUIRE(row.at("ray_count").get<int>() > 200);
+    if (row.at("method").get<std::string>().starts_with("embree")) continue;
+    REQUIRE(row.at("boxes_per_ray") > 1.0);
+    REQUIRE(row.at("triangles_per_ray") > 0.0);
+  }
+  // Trees differ, answers do not.
+  for (const json& row : rows_of(report, "accuracy")) {
+    CAPTURE(row.dump());
+    const std::string method = row.at("method");
+    if (method.starts_with("embree") || method.ends_with("fast-hits")) continue;
+    REQUIRE(row.at("lost").get<int>() + row.at("false_hits").get<int>() +
+                row.at("wrong_primitive").get<int>() ==
+            0);
+    REQUIRE(row.at("same_as") == (method == "sah-balanced" ? json(nullptr) : json("sah-balanced")));
+    REQUIRE(row.at("judged") > 100);
+  }
+  // What the light's heuristic expects of the light's rays is what they cost, within sampling.
+  bool predicted = false;
+  for (const json& row : rows_of(report, "prediction")) {
+    if (row.at("method") != "pah-window@light" || row.at("rays") != "light") continue;
+    predicted = true;
+    const double off = row.at("measured").get<double>() - row.at("predicted").get<double>();
+    REQUIRE(std::abs(off) < 5.0 * row.at("standard_error").get<double>());
+  }
+  REQUIRE(predicted);
+
+  const auto names = folder.names();
+  std::size_t charts = 0;
+  for (const std::string& name : names) charts += name.ends_with(".svg") ? 1 : 0;
+  REQUIRE(charts == document.at("charts"));
+  REQUIRE(charts >= 10);
+  const std::string page = program::read_text(folder.file("r.html"));
+  REQUIRE_THAT(
+      page, Contains("pareto-accuracy") && Contains("data:image/png;base64,") && !Contains("not complete"));
+
+  // All is finished: the same command measures nothing and writes the same bytes.
+  const std::string csv = program::read_text(folder.file("r.csv"));
+  const auto again = run(command(folder.file("r.html")));
+  CAPTURE(again.err);
+  REQUIRE(again.status == 0);
+  REQUIRE_THAT(again.err, Contains("going on from"));
+  REQUIRE(program::read_text(folder.file("r.html")) == page);
+  REQUIRE(program::read_text(folder.file("r.csv")) == csv);
+
+  // Other options are other work.
+  const auto other = run(command(folder.file("r.html"), {"--seed", "2"}));
+  REQUIRE(other.status == 0);
+  REQUIRE_THAT(other.err, Contains("measuring anew"));
+  REQUIRE(program::read_text(folder.file("r.html")) != page);
+}
+
+TEST_CASE("Ctrl-C keeps what is finished, and the same command goes on from there") {
+  const Folder folder;
+  program::Setup setup;
+  setup.terminal = true;
+  setup.environment["TERM"] = "xterm";
+  setup.interrupt_at = "trace shadow";
+  const auto stopped = run(command(folder.file("r.html")), setup);
+  CAPTURE(stopped.err);
+  REQUIRE(stopped.status == 130);
+  REQUIRE_THAT(stopped.err, Contains("the same command goes on from there"));
+  const json kept = read_report(folder);
+  REQUIRE(kept.at("complete") == false);
+  const auto builds = rows_of(kept, "build");
+  REQUIRE_FALSE(builds.empty());
+  REQUIRE(builds.front().at("wall_s").size() == 3);
+  REQUIRE_FALSE(std::filesystem::exists(folder.file("r.html")));
+
+  const auto resumed = run(command(folder.file("r.html")));
+  CAPTURE(resumed.err);
+  REQUIRE(resumed.status == 0);
+  const json whole = read_report(folder);
+  REQUIRE(whole.at("complete") == true);
+  REQUIRE(rows_of(whole, "build") == builds);  // not measured again
+  std::set<std::string> kinds;
+  for (const json& row : rows_of(whole, "trace")) kinds.insert(row.at("rays").get<std::string>());
+  REQUIRE(kinds == std::set<std::string>{"light", "primary", "shadow"});
+}
+
+TEST_CASE("where time is short less is measured, and the page says what was left out") {
+  const Folder folder;
+  const auto outcome = run(command(folder.file("r.html"), {"--time", "0.01s"}));
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const json report = read_report(folder);
+  REQUIRE(report.at("complete") == true);
+  REQUIRE_FALSE(rows_of(report, "left_out").empty());
+  REQUIRE(rows_of(report, "build").size() == 1);  // the baseline always runs
+  REQUIRE_THAT(program::read_text(folder.file("r.html")),
+               Contains("What was left out") && Contains("the budget is"));
+  REQUIRE_THAT(outcome.err, Contains("left out: "));
+}
+
+TEST_CASE("a file of rays is a kind of rays") {
+  const Folder folder;
+  REQUIRE(run({"trace", "gen:cottage:7k", "--count", "1000", "--rays-out", folder.file("my.rays"), "--quiet"})
+              .status == 0);
+  const auto outcome = run({"compare", "gen:cottage:7k", "--methods", "sah-fast", "--rays",
+                            folder.file("my.rays"), "--rounds", "1", "-o", folder.file("r.html"), "--quiet"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const auto traces = rows_of(read_report(folder), "trace");
+  REQUIRE(traces.size() == 2);
+  REQUIRE(traces[0].at("ray_count") == 1000);
+}
+
+TEST_CASE("what makes no sense is refused before anything is measured") {
+  const Folder folder;
+  const std::string page = folder.file("r.html");
+  const auto refused = [&](const std::vector<std::string>& words, int status, const std::string& message) {
+    std::vector<std::string> all{"compare", "gen:random:100"};
+    all.insert(all.end(), words.begin(), words.end());
+    const auto outcome = run(all);
+    CAPTURE(outcome.err, words);
+    REQUIRE(outcome.status == status);
+    REQUIRE_THAT(outcome.err, Contains(message));
+  };
+  refused({"-o", folder.file("r.txt")}, 2, "must end with .html");
+  refused({"-o", folder.file("nowhere/r.html")}, 1, "no folder");
+  refused({"-o", page, "--time", "soon"}, 2, "write 60s");
+  refused({"-o", page, "--methods", "bvh9"}, 2, "sah-balanced");
+  refused({"-o", page, "--rays", "sideways"}, 4, "anything else is a file of rays");
+  refused({"-o", page, "--devices", "no such device"}, 3, "no such device");
+  refused({"-o", page, "--rounds", "0"}, 2, "--rounds");
+  program::write_text(folder.file("r.json"), "not a report");
+  refused({"-o", page}, 4, "not a report that can be gone on from");
+}

@@ -1,20 +1,21 @@
-// A path tracer in wavefronts: every kernel does one thing for all paths of a batch, and rays are traced by the tracer's own
-// kernels in between. Paths that have ended, and shadow rays that need not be asked, are packed out by a stable prefix sum
-// (scan_values of radix_sort.cl), so a batch's order never depends on the device. One work-item per path, or per chunk.
+// A path tracer in wavefronts: every kernel does one thing for all paths of a batch, and rays are traced by the
+// tracer's own kernels in between. Paths that have ended, and shadow rays that need not be asked, are packed out by a
+// stable prefix sum (scan_values of radix_sort.cl), so a batch's order never depends on the device. One work-item per
+// path, or per chunk.
 #include "shared/path_math.h"
 
-#define GN_PATH_TABLES                                                                                                  \
-  __global const GnPathFrame *frame, __global const GnTriangle *triangles, __global const uint *surface_ids,            \
-      __global const GnSurface *surfaces, __global const GnPathLight *lights, __global const GnEmitter *emitters,       \
+#define GN_PATH_TABLES \
+  __global const GnPathFrame *frame, __global const GnTriangle *triangles, __global const uint *surface_ids, \
+      __global const GnSurface *surfaces, __global const GnPathLight *lights, __global const GnEmitter *emitters, \
       __global const GnEmitterLink *links
 
 #define GN_COLLECT_TABLES(tables) \
-  tables.frame = frame;           \
-  tables.triangles = triangles;   \
+  tables.frame = frame; \
+  tables.triangles = triangles; \
   tables.surface_ids = surface_ids; \
-  tables.surfaces = surfaces;     \
-  tables.lights = lights;         \
-  tables.emitters = emitters;     \
+  tables.surfaces = surfaces; \
+  tables.lights = lights; \
+  tables.emitters = emitters; \
   tables.links = links
 
 // Paths [0, count) of a batch: its cells, one after another, sample after sample.

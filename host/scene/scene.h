@@ -1,4 +1,4 @@
-// A scene as building, tracing and the picture need it: triangles in world space, cameras, lights and three
+// A scene as building, tracing and the picture need it: triangles in world space, cameras, lights and four
 // material values. Not for textures, animation or instancing. Feeds primitives, ray sets, areas and the
 // renderer.
 #pragma once

@@ -1,7 +1,8 @@
-// How surfaces scatter light, for both compilers: Lambert's law and GGX microfacets as glTF's metallic-roughness materials
-// mix them, in a frame whose z axis is the normal. Lit from one side only; no transmission. Additions, multiplications and
-// what elementary_math.h makes of them, so the same bits on every device. Sources: glTF 2.0, appendix B; Heitz 2014
-// (height-correlated masking), Heitz 2018 (sampling visible normals); Duff and others 2017 (frames).
+// How surfaces scatter light, for both compilers: Lambert's law and GGX microfacets as glTF's metallic-roughness
+// materials mix them, in a frame whose z axis is the normal. Lit from one side only; no transmission. Additions,
+// multiplications and what elementary_math.h makes of them, so the same bits on every device. Sources: glTF 2.0,
+// appendix B; Heitz 2014 (height-correlated masking), Heitz 2018 (sampling visible normals); Duff and others 2017
+// (frames).
 #ifndef GNOMON_SHARED_BSDF_MATH_H
 #define GNOMON_SHARED_BSDF_MATH_H
 
@@ -79,8 +80,8 @@ GN_INLINE void gn_cosine_direction(const gn_f32* point, gn_f32* inside) {
   inside[2] = gn_root(1.0f - point[0]);
 }
 
-// A surface as seen along `view`, which points away from it: unit, in its frame, view[2] > 0. A surface that is no metal
-// and entirely rough is matt: Lambert's law alone.
+// A surface as seen along `view`, which points away from it: unit, in its frame, view[2] > 0. A surface that is no
+// metal and entirely rough is matt: Lambert's law alone.
 typedef struct GnScatter {
   gn_f32 view[3];
   gn_f32 diffuse[3];  // reflectance without the share that the gloss takes

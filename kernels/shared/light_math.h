@@ -1,5 +1,5 @@
-// Lights as paths see them, for both compilers: how much one could bring to a place, a direction drawn towards it, and how
-// likely that direction was. Not for visibility: that is a ray's business. Point lights and spots fall off as
+// Lights as paths see them, for both compilers: how much one could bring to a place, a direction drawn towards it, and
+// how likely that direction was. Not for visibility: that is a ray's business. Point lights and spots fall off as
 // KHR_lights_punctual says; area lights shine to both sides, evenly; the sky is a gradient from all sides.
 #ifndef GNOMON_SHARED_LIGHT_MATH_H
 #define GNOMON_SHARED_LIGHT_MATH_H
@@ -115,7 +115,8 @@ GN_INLINE void gn_triangle_normal(const GnTriangle* t, gn_f32* normal) {
   if (!gn_make_unit(normal)) normal[0] = normal[1] = normal[2] = 0.0f;
 }
 
-// By solid angle, the reciprocal density of an even choice of a light's points, for one `square` away seen at this cosine.
+// By solid angle, the reciprocal density of an even choice of a light's points, for one `square` away seen at this
+// cosine.
 GN_INLINE gn_f32 gn_area_per_angle(const GnPathLight* light, gn_f32 square, gn_f32 cosine) {
   return light->area * gn_abs(cosine) * gn_reciprocal(gn_max(square, 1e-30f));
 }

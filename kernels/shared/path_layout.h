@@ -61,7 +61,8 @@ GN_SIZE_IS(GnEmitterLink, 8);
 #define GN_STRATEGY_SURFACES 2u
 
 // What all paths share. A picture is walked in tiles of 8 x 8 pixels, row by row, tile after tile; places of a tile
-// beyond the picture have no path. Directions through the picture: corner + x right + y down, in pixels from the top left.
+// beyond the picture have no path. Directions through the picture: corner + x right + y down, in pixels from the top
+// left.
 typedef struct GnPathFrame {
   gn_f32 eye[3];
   gn_u32 width;

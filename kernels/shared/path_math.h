@@ -1,6 +1,6 @@
-// One step of a path, for both compilers: what the surface a ray met sends along it, a light to ask, and the way on. Solves
-// the rendering equation (Kajiya 1986) with light sampling and scattering weighed by the power heuristic (Veach, Guibas
-// 1995) and Russian roulette. Not for tracing. Feeds path.cl and path_reference.cpp.
+// One step of a path, for both compilers: what the surface a ray met sends along it, a light to ask, and the way on.
+// Solves the rendering equation (Kajiya 1986) with light sampling and scattering weighed by the power heuristic (Veach,
+// Guibas 1995) and Russian roulette. Not for tracing. Feeds path.cl and path_reference.cpp.
 #ifndef GNOMON_SHARED_PATH_MATH_H
 #define GNOMON_SHARED_PATH_MATH_H
 
@@ -41,7 +41,8 @@ GN_INLINE void gn_draw(const GnPathTables* tables, const GnPath* path, gn_u32 bo
   gn_sample_point(seed, path->pixel, bounce * GN_PURPOSES + purpose, path->sample, point);
 }
 
-// The share of a sample of density `own` when another way would have found the same with density `other` (power heuristic).
+// The share of a sample of density `own` when another way would have found the same with density `other` (power
+// heuristic).
 GN_INLINE gn_f32 gn_weight(gn_f32 own, gn_f32 other) {
   const gn_f32 ratio = gn_min(other * gn_reciprocal(gn_max(own, 1e-30f)), 1e15f);
   return gn_reciprocal(1.0f + ratio * ratio);
@@ -119,8 +120,8 @@ GN_INLINE void gn_meet_sky(const GnPathTables* tables, const GnRay* ray, GnPath*
                              GN_PI * gn_reciprocal(gn_max(path->cosine, 1e-30f))));
 }
 
-// A direction towards a light, drawn, with the radiance that comes from there and the reciprocal of the density by solid
-// angle, which of points and suns is 1 and their radiance irradiance. 0: nothing comes.
+// A direction towards a light, drawn, with the radiance that comes from there and the reciprocal of the density by
+// solid angle, which of points and suns is 1 and their radiance irradiance. 0: nothing comes.
 GN_INLINE int gn_aim_at(const GnPathTables* tables, const GnPathLight* light, const GnPlace* place,
                         const GnBasis* basis, const gn_f32* point, GnRay* ray, gn_f32* radiance, gn_f32* angle) {
   gn_f32 square = 0.0f;
@@ -168,8 +169,8 @@ GN_INLINE int gn_aim_at(const GnPathTables* tables, const GnPathLight* light, co
   return gn_dot(ray->direction, place->normal) > 0.0f;
 }
 
-// Draws a light in proportion to its importance here and a ray to it; lit: what that brings if the ray is free. Leaves the
-// sum of importances in the path.
+// Draws a light in proportion to its importance here and a ray to it; lit: what that brings if the ray is free. Leaves
+// the sum of importances in the path.
 GN_INLINE void gn_ask_light(const GnPathTables* tables, const GnPlace* place, const GnBasis* basis,
                             const GnScatter* scatter, gn_f32 choice, const gn_f32* point, GnPath* path, GnRay* ray,
                             GnLit* lit) {

@@ -1,6 +1,6 @@
 // Random numbers for the path tracer, for both compilers: each is a function of seed, pixel, sample and what it is for,
-// never of what was drawn before. Integer steps only, so the same on every device. Not cryptographic.
-// Sources: Burley 2020 (shuffled Sobol points with hashed Owen scrambling), Wellons' triple32 (hash).
+// never of what was drawn before. Integer steps only, so the same on every device. Not cryptographic. Sources: Burley
+// 2020 (shuffled Sobol points with hashed Owen scrambling), Wellons' triple32 (hash).
 #ifndef GNOMON_SHARED_SAMPLE_MATH_H
 #define GNOMON_SHARED_SAMPLE_MATH_H
 
@@ -26,7 +26,8 @@ GN_INLINE gn_u32 gn_reversed_bits(gn_u32 x) {
   return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
-// A nested permutation of the numbers whose bits are read from the lowest: what a bit becomes depends on lower ones only.
+// A nested permutation of the numbers whose bits are read from the lowest: what a bit becomes depends on lower ones
+// only.
 GN_INLINE gn_u32 gn_nested_hash(gn_u32 x, gn_u32 seed) {
   x += seed;
   x ^= x * 0x6c50b47cu;
@@ -35,8 +36,8 @@ GN_INLINE gn_u32 gn_nested_hash(gn_u32 x, gn_u32 seed) {
   return x ^ (x * 0x8d22f6e6u);
 }
 
-// The second coordinate of a Sobol point, whose first is `reversed`, its number's bits reversed: Pascal's triangle modulo
-// two times those bits, as (1 + x)^n = 1 + x^n modulo two for powers of two n.
+// The second coordinate of a Sobol point, whose first is `reversed`, its number's bits reversed: Pascal's triangle
+// modulo two times those bits, as (1 + x)^n = 1 + x^n modulo two for powers of two n.
 GN_INLINE gn_u32 gn_second_sobol(gn_u32 reversed) {
   reversed ^= (reversed & 0x0000ffffu) << 16;
   reversed ^= (reversed & 0x00ff00ffu) << 8;
@@ -48,8 +49,8 @@ GN_INLINE gn_u32 gn_second_sobol(gn_u32 reversed) {
 // The upper 24 bits, in [0, 1).
 GN_INLINE gn_f32 gn_unit_of(gn_u32 bits) { return (gn_f32)(bits >> 8) * 5.9604645e-8f; }
 
-// The sample-th point of the unit square of those meant for `purpose` in a pixel. Any 2^k consecutive samples from a multiple
-// of 2^k on lie evenly; points of different purposes or pixels know nothing of each other.
+// The sample-th point of the unit square of those meant for `purpose` in a pixel. Any 2^k consecutive samples from a
+// multiple of 2^k on lie evenly; points of different purposes or pixels know nothing of each other.
 GN_INLINE void gn_sample_point(const gn_u32* seed, gn_u32 pixel, gn_u32 purpose, gn_u32 sample, gn_f32* point) {
   const gn_u32 key = gn_hash_with(gn_hash_with(gn_hash_with(gn_hash_with(0u, seed[0]), seed[1]), pixel), purpose);
   const gn_u32 shuffled = gn_nested_hash(gn_reversed_bits(sample), key);  // bits reversed, as the rest takes them

@@ -66,8 +66,8 @@ TEST_CASE("a wrong density is seen, of lights as of directions") {
                                "return light->area *");
     CHECK(lamp_off() > 8.0);
   }
-  const BrokenKernels broken("shared/bsdf_math.h", "*density = GN_ONE_OVER_PI * cosine;",
-                             "*density = 0.5f * GN_ONE_OVER_PI;");
+  const BrokenKernels broken("shared/path_math.h", "factor = gn_reciprocal(path->density);",
+                             "factor = GN_PI;");
   CHECK(box_off() > 8.0);
 }
 

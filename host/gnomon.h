@@ -22,6 +22,7 @@
 #include "gnomon/scene/generators.h"
 #include "gnomon/scene/gltf_export.h"
 #include "gnomon/scene/import.h"
+#include "gnomon/scene/ray_record.h"
 #include "gnomon/scene/ray_set.h"
 #include "gnomon/scene/scene.h"
 #include "gnomon/tree/build_options.h"

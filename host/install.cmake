@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 # headers that users do not have. tests/consumer compiles each of these alone.
 set(public_headers
   base/error.h base/progress.h
-  scene/scene.h scene/import.h scene/generators.h scene/gltf_export.h scene/ray_set.h
+  scene/scene.h scene/import.h scene/generators.h scene/gltf_export.h scene/ray_set.h scene/ray_record.h
   areas/vector.h areas/box.h areas/ray_tests.h areas/solids.h areas/convex_polygon.h areas/influence_area.h
   areas/ray_measure.h areas/projection.h areas/cone_weights.h areas/membership.h areas/areas_from_scene.h
   areas/area_rays.h areas/measure.h areas/shared_area.h
@@ -14,7 +14,7 @@ set(public_headers
   cl/opencl.h cl/check.h cl/handle.h cl/device.h cl/context.h cl/launch.h
   device/build_device.h device/collapse_device.h device/optimise_device.h device/compact_device.h device/trace_device.h
   device/forest.h device/find_areas.h device/trace_areas.h
-  render/picture.h render/render.h render/heat_map.h render/png.h)
+  render/picture.h render/path_options.h render/path_tracer.h render/ray_recorder.h render/render.h render/heat_map.h render/png.h)
 set(header_folder ${CMAKE_INSTALL_INCLUDEDIR}/gnomon)
 install(FILES gnomon.h DESTINATION ${header_folder})
 foreach(header ${public_headers})

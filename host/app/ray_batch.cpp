@@ -1,6 +1,71 @@
 #include "ray_batch.h"
 
+#include <algorithm>
+
 namespace gnomon::app {
+namespace {
+
+std::vector<NamedRays> read_record(const RayFileOptions& options) {
+  std::vector<RecordedKind> kinds;
+  for (const std::string& name : options.kinds) kinds.push_back(*recorded_kind_from(name));
+  const RayRecord record = only_kinds(read_ray_record(options.file), kinds);
+  std::vector<NamedRays> out;
+  auto first = record.rays.begin();
+  for (const RayStratum& stratum : record.strata) {
+    const auto last = first + static_cast<std::ptrdiff_t>(stratum.stored);
+    const std::string kind(to_string(stratum.kind));
+    auto place =
+        std::find_if(out.begin(), out.end(), [&](const NamedRays& some) { return some.kind == kind; });
+    if (place == out.end()) place = out.insert(out.end(), {kind, {}});
+    place->rays.insert(place->rays.end(), first, last);
+    first = last;
+  }
+  for (const std::string& wanted : options.kinds) {
+    if (std::any_of(out.begin(), out.end(), [&](const NamedRays& some) { return some.kind == wanted; }))
+      continue;
+    throw Error(ErrorCode::kBadScene, options.file + " holds no " + wanted + " rays");
+  }
+  return out;
+}
+
+}  // namespace
+
+CLI::Option* add_ray_file_options(CLI::App& command, RayFileOptions& options) {
+  CLI::Option* const file =
+      command
+          .add_option("--rays-in", options.file,
+                      "take the rays of this file instead: raw ones, or a record (.gnr) "
+                      "as render --record writes")
+          ->type_name("FILE");
+  command
+      .add_option("--kinds", options.kinds,
+                  "of a record's rays only these, with commas between: camera, bounce, shadow, other")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"camera", "bounce", "shadow", "other"}))
+      ->needs(file)
+      ->type_name("K,...");
+  return file;
+}
+
+std::vector<NamedRays> read_ray_file(const RayFileOptions& options) {
+  try {
+    if (is_ray_record(options.file)) return read_record(options);
+    std::vector<Ray> rays = read_rays(options.file);
+    if (!options.kinds.empty()) {
+      throw Error(ErrorCode::kInvalidArgument,
+                  "--kinds chooses from a record (.gnr); " + options.file + " holds raw rays");
+    }
+    return {{"file", std::move(rays)}};
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kIo) throw Error(ErrorCode::kBadScene, error.what());
+    throw;
+  }
+}
+
+bool asks_shadow_only(const RayFileOptions& options) {
+  return !options.kinds.empty() && std::all_of(options.kinds.begin(), options.kinds.end(),
+                                               [](const std::string& kind) { return kind == "shadow"; });
+}
 
 std::vector<Ray> make_rays(RayKind kind, const Scene& scene, const Tracer& tracer, std::uint64_t count,
                            std::uint64_t seed, const Progress& progress) {

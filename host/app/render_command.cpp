@@ -9,6 +9,7 @@
 #include "document.h"
 #include "gnomon/render/heat_map.h"
 #include "gnomon/render/png.h"
+#include "gnomon/render/ray_recorder.h"
 #include "gnomon/render/render.h"
 #include "gnomon/render/tone.h"
 #include "heuristic_options.h"
@@ -27,8 +28,10 @@ struct Options {
   HeuristicOptions heuristic;
   std::string tree_file;  // empty: build one
   RenderOptions render;
-  double exposure = 0.0;  // in steps of two around the automatic one
-  std::string file, heat_map;
+  double exposure = 0.0;      // in steps of two around the automatic one
+  std::uint32_t samples = 0;  // of path tracing; 0: a preview
+  std::string file, heat_map, record;
+  std::uint64_t record_rays = 100'000;
 };
 
 struct Outcome {
@@ -36,6 +39,7 @@ struct Outcome {
   double exposure = 1.0;
   double seconds = 0.0;
   HeatScale heat;
+  RayRecord record;
   [[nodiscard]] std::uint64_t rays() const { return result.camera_rays + result.other_rays; }
 };
 
@@ -43,7 +47,13 @@ Outcome render_timed(const Options& options, const cl::Context& context, const T
                      const Scene& scene, const Progress& progress) {
   Outcome outcome;
   const auto start = std::chrono::steady_clock::now();
-  outcome.result = render(context, build.tree, scene, options.render, progress);
+  RayRecorder recorder(options.record_rays, options.render.seed);
+  RayObserver observer;
+  if (!options.record.empty()) observer = [&](const TracedRays& traced) { recorder.add(traced); };
+  outcome.result = options.samples == 0
+                       ? render(context, build.tree, scene, options.render, progress)
+                       : render_paths(context, build.tree, scene, options.render, progress, observer);
+  outcome.record = recorder.record();
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.exposure =
       auto_exposure(outcome.result.picture, outcome.result.coverage) * std::exp2(options.exposure);
@@ -56,15 +66,29 @@ void write_pictures(const Options& options, const Outcome& outcome) {
   const RgbImage picture = tone_map(result.picture, outcome.exposure);
   stop_if_interrupted();
   write_png(picture, options.file);
+  if (!options.record.empty()) write_ray_record(options.record, outcome.record);
   if (options.heat_map.empty()) return;
   write_png(heat_map(options.render.width, options.render.height, result.boxes, outcome.heat),
             options.heat_map);
+}
+
+Json record_of(const Options& options, const RayRecord& record) {
+  Json strata = Json::array();
+  for (const RayStratum& stratum : record.strata) {
+    strata.push_back({{"kind", to_string(stratum.kind)},
+                      {"light", stratum.light == kNoLight ? Json(nullptr) : Json(stratum.light)},
+                      {"depth", stratum.depth},
+                      {"traced", stratum.traced},
+                      {"stored", stratum.stored}});
+  }
+  return {{"file", options.record}, {"rays", record.rays.size()}, {"strata", strata}};
 }
 
 void add_outcome(Json& document, const Options& options, const Outcome& outcome) {
   Json& chosen = document["options"];
   chosen["width"] = options.render.width;
   chosen["height"] = options.render.height;
+  chosen["method"] = options.samples == 0 ? "preview" : "paths";
   chosen["samples"] = options.render.samples;
   chosen["seed"] = options.render.seed;
   chosen["exposure"] = options.exposure;
@@ -74,6 +98,8 @@ void add_outcome(Json& document, const Options& options, const Outcome& outcome)
   document["device_seconds"] = 1e-3 * outcome.result.kernel_ms;
   document["rays"] = outcome.rays();
   document["camera_rays"] = outcome.result.camera_rays;
+  document["record"] = nullptr;
+  if (!options.record.empty()) document["record"] = record_of(options, outcome.record);
   document["heat_map"] = nullptr;
   if (options.heat_map.empty()) return;
   document["heat_map"] = {{"file", options.heat_map},
@@ -91,11 +117,16 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
   facts.add("tree", describe(build));
   facts.add("picture", options.file + ", " + std::to_string(options.render.width) + " x " +
                            std::to_string(options.render.height) + ", " +
-                           std::to_string(options.render.samples) + " samples a pixel");
+                           std::to_string(options.render.samples) +
+                           (options.samples == 0 ? " samples a pixel, a preview" : " paths a pixel"));
   if (!options.heat_map.empty()) {
     facts.add("heat map", options.heat_map + ", 0 (black) to " + fixed(outcome.heat.white, 0) +
                               " boxes a camera ray (pale), " + fixed(outcome.heat.mean, 1) + " on average, " +
                               fixed(outcome.heat.max, 0) + " at most");
+  }
+  if (!options.record.empty()) {
+    facts.add("record", options.record + ", " + std::to_string(outcome.record.rays.size()) + " rays in " +
+                            std::to_string(outcome.record.strata.size()) + " strata");
   }
   facts.add("rays", std::to_string(outcome.rays()) + " in " + fixed(outcome.seconds, 2) + " s");
   return facts.text();
@@ -103,6 +134,10 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
 
 int run(Options options, Console& console) {
   options.render.heat_map = !options.heat_map.empty();
+  if (options.samples != 0) options.render.samples = options.samples;
+  if (!options.record.empty() && options.samples == 0) {
+    throw Error(ErrorCode::kInvalidArgument, "--record stores the rays of path tracing: give --samples, too");
+  }
   options.build.check();
   options.render.check();
   check(options.heuristic);
@@ -143,8 +178,19 @@ void add_render_command(CLI::App& program, OutputOptions& output, Action& action
       ->type_name("PNG");
   add_count(*command, "--width", options->render.width, "in pixels, up to 16384");
   add_count(*command, "--height", options->render.height, "in pixels, up to 16384");
-  add_count(*command, "--samples", options->render.samples,
-            "camera rays a pixel, up to 4096; more is smoother");
+  CLI::Option* const samples = add_count(*command, "--samples", options->samples,
+                                         "trace so many paths through each pixel, 1 to 4096: light as it "
+                                         "is, and noise that halves with four times as many")
+                                   ->check(CLI::Range(1, 4096))
+                                   ->default_str("");
+  add_count(*command, "--preview", options->render.samples,
+            "without --samples: a preview from so many camera rays a pixel, up to 4096")
+      ->excludes(samples);
+  command
+      ->add_option("--record", options->record, "with --samples: store a sample of the rays traced, by kind")
+      ->type_name("GNR");
+  add_count(*command, "--record-rays", options->record_rays, "so many rays in it at most")
+      ->check(CLI::Range(1, 1000000000));
   add_count(*command, "--seed", options->render.seed, "the same seed gives the same picture");
   command->add_option("--exposure", options->exposure, "brighter or darker than by itself, in steps of two")
       ->check(CLI::Range(-20.0, 20.0))
@@ -156,10 +202,15 @@ void add_render_command(CLI::App& program, OutputOptions& output, Action& action
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(
-      "Through the scene's first camera (else one that sees all of it), lit by its lights (else by a sun):\n"
-      "direct light, sky, matt surfaces. Ctrl-C leaves no half picture.\n\n"
+      "Through the scene's first camera (else one that sees all of it), lit by its lights (else by a sun) "
+      "and a\n"
+      "sky. A preview has direct light, matt surfaces and light that bounced once, smoothed. With --samples "
+      "paths\n"
+      "are traced: matt and glossy surfaces and metals, all bounces. Ctrl-C leaves no half picture or "
+      "record.\n\n"
       "Examples:\n  gnomon render model.glb -o model.png\n"
-      "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png --samples 32");
+      "  gnomon render gen:atrium -o atrium.png --samples 64 --record rays.gnr\n"
+      "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png --preview 32");
   command->callback(
       [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }

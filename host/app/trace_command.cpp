@@ -31,7 +31,8 @@ struct Options {
   std::string accuracy = "watertight";
   bool sort = false;
   std::uint64_t repeat = 5;
-  std::string rays_in, rays_out, hits_out;
+  RayFileOptions rays_in;
+  std::string rays_out, hits_out;
 };
 
 TraceFlavour flavour_from(const std::string& name) {
@@ -62,28 +63,30 @@ bool wants_any_hit(const Options& options) {
     throw Error(ErrorCode::kInvalidArgument, "--hits-out writes closest hits: leave out --query any");
   }
   if (!options.query.empty()) return options.query == "any";
-  return options.hits_out.empty() && options.rays_in.empty() && asks_any_hit(*ray_kind_from(options.kind));
+  if (!options.hits_out.empty()) return false;
+  if (!options.rays_in.file.empty()) return asks_shadow_only(options.rays_in);
+  return asks_any_hit(*ray_kind_from(options.kind));
 }
 
 std::vector<Ray> rays_of(const Options& options, const Scene& scene, const cl::Context& context,
                          const DeviceBvh& tree, const Progress& progress) {
-  if (options.rays_in.empty()) {
+  if (options.rays_in.file.empty()) {
     return make_rays(*ray_kind_from(options.kind), scene, Tracer(context, tree), options.count, options.seed,
                      progress);
   }
-  try {
-    return read_rays(options.rays_in);
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::kIo) throw Error(ErrorCode::kBadScene, error.what());
-    throw;
-  }
+  std::vector<Ray> rays;
+  for (const NamedRays& some : read_ray_file(options.rays_in))
+    rays.insert(rays.end(), some.rays.begin(), some.rays.end());
+  return rays;
 }
 
 void add_trace(Json& document, const Options& options, const TimedTrace& trace, std::size_t rays,
                bool any_hit) {
   Json& chosen = document["options"];
-  chosen["rays"] = options.rays_in.empty() ? Json(options.kind) : Json(nullptr);
-  chosen["rays_in"] = options.rays_in.empty() ? Json(nullptr) : Json(options.rays_in);
+  const bool made = options.rays_in.file.empty();
+  chosen["rays"] = made ? Json(options.kind) : Json(nullptr);
+  chosen["rays_in"] = made ? Json(nullptr) : Json(options.rays_in.file);
+  chosen["kinds"] = options.rays_in.kinds;
   chosen["count"] = options.count;
   chosen["seed"] = options.seed;
   chosen["query"] = any_hit ? "any" : "closest";
@@ -115,8 +118,8 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
   facts.add("heuristic", heuristic);
   facts.add("tree", describe(build));
   facts.add("rays", std::to_string(rays) + " " +
-                        (options.rays_in.empty() ? options.kind : "from " + options.rays_in) + ", " +
-                        (any_hit ? "any hit" : "closest hit"));
+                        (options.rays_in.file.empty() ? options.kind : "from " + options.rays_in.file) +
+                        ", " + (any_hit ? "any hit" : "closest hit"));
   facts.add("hits", std::to_string(trace.hit_count) + " (" + fixed(share, 1) + " %)");
   if (trace.invalid_rays > 0)
     facts.add("invalid", std::to_string(trace.invalid_rays) + " rays that miss for that");
@@ -168,10 +171,11 @@ int run(const Options& options, Console& console) {
 }
 
 const char* const kFiles =
-    "Files hold raw little-endian records and nothing else:\n"
+    "Files hold raw little-endian records and nothing else, where they are not records of a render:\n"
     "  a ray, 32 bytes: origin x y z, tmin, direction x y z, tmax, all float32\n"
     "  a hit, 16 bytes: t, u, v as float32, triangle as uint32; a miss has triangle 0xffffffff and t "
     "infinite\n"
+    "A record (.gnr) has a header and says which rays are of which kind; README describes it.\n"
     "The hit of a ray has the ray's place. The point hit is origin + t * direction = (1-u-v) v0 + u v1 + v "
     "v2.\n";
 
@@ -187,14 +191,14 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
                                 ->capture_default_str();
   add_count(*command, "--count", options->count, "so many rays; bounce and shadow rays: at most");
   add_count(*command, "--seed", options->seed, "for the rays that are drawn at random");
-  command->add_option("--rays-in", options->rays_in, "trace the rays of this file instead")
-      ->excludes(kind)
-      ->type_name("FILE");
+  add_ray_file_options(*command, options->rays_in)->excludes(kind);
   command->add_option("--rays-out", options->rays_out, "write the rays traced")->type_name("FILE");
   command->add_option("--hits-out", options->hits_out, "write the closest hits")->type_name("FILE");
   command
-      ->add_option("--query", options->query,
-                   "closest or any; default: any for shadow and parallel, else closest")
+      ->add_option(
+          "--query", options->query,
+          "closest or any; default: any for shadow and parallel, else closest (a file's rays: any where "
+          "--kinds names shadow alone)")
       ->check(CLI::IsMember({"closest", "any"}))
       ->type_name("Q");
   command
@@ -229,7 +233,8 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
   command->footer(explain_ray_kinds() + "\n" + kFiles +
                   "\nExamples:\n  gnomon trace model.glb --rays bounce --count 2M\n"
                   "  gnomon trace model.glb --rays-in my.rays --hits-out my.hits\n"
-                  "  gnomon build model.glb -o model.gnb && gnomon trace model.glb --tree model.gnb");
+                  "  gnomon build model.glb -o model.gnb && gnomon trace model.glb --tree model.gnb\n"
+                  "  gnomon trace model.glb --rays-in rays.gnr --kinds shadow");
   command->callback(
       [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }

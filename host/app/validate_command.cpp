@@ -39,6 +39,7 @@ struct Options {
   std::uint64_t seed = 1;
   double budget_seconds = 30.0;
   bool reference = false;
+  RayFileOptions rays_in;
 };
 
 struct KindReport {
@@ -75,11 +76,16 @@ void check_tree(Findings& findings, const Options& options, const BuildOptions& 
 // What is left of the oracle's time is shared evenly by the kinds still to come.
 void check_rays(Findings& findings, const Options& options, const Scene& scene, const Tracer& tracer,
                 bool has_double, const Progress& progress) {
-  const auto names = ray_kind_names();
+  const bool made = options.rays_in.file.empty();
+  const auto given = made ? std::vector<NamedRays>{} : read_ray_file(options.rays_in);
+  std::vector<std::string> names = ray_kind_names();
+  if (!made) names.clear();
+  for (const NamedRays& some : given) names.push_back(some.kind);
   double seconds_left = options.budget_seconds;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const auto rays =
-        make_rays(*ray_kind_from(names[i]), scene, tracer, options.count, options.seed, progress);
+        made ? make_rays(*ray_kind_from(names[i]), scene, tracer, options.count, options.seed, progress)
+             : given[i].rays;
     const TraceResult closest = tracer.closest(rays, progress);
     const TraceResult any = tracer.any(rays, progress);
     const double share = std::max(0.0, seconds_left) / static_cast<double>(names.size() - i);
@@ -112,6 +118,8 @@ void add_findings(Json& document, const Options& options, const Findings& findin
   chosen["max_rays"] = options.max_rays;
   chosen["seed"] = options.seed;
   chosen["budget_s"] = options.budget_seconds;
+  chosen["rays_in"] = options.rays_in.file.empty() ? Json(nullptr) : Json(options.rays_in.file);
+  chosen["kinds"] = options.rays_in.kinds;
   document["tree_fault"] = findings.fault ? Json(findings.fault->what) : Json(nullptr);
   document["reference_hash"] = findings.reference_hash ? Json(*findings.reference_hash) : Json(nullptr);
   document["rays_judged"] = findings.judged();
@@ -213,6 +221,7 @@ void add_validate_command(CLI::App& program, OutputOptions& output, Action& acti
       ->check(CLI::Range(1e-3, 1e6))
       ->type_name("S")
       ->capture_default_str();
+  add_ray_file_options(*command, options->rays_in);
   command->add_flag("--reference", options->reference,
                     "build with the reference builder too, however large the scene");
   add_build_options(*command, options->build);
@@ -230,7 +239,8 @@ void add_validate_command(CLI::App& program, OutputOptions& output, Action& acti
       "up to 200000 triangles any bit that differs from the reference builder's tree. Exit status 6 for a "
       "mismatch.\n\n" +
       explain_ray_kinds() +
-      "\nExamples:\n  gnomon validate model.glb\n  gnomon validate gen:city:1M --budget 120 --max-rays 10k");
+      "\nExamples:\n  gnomon validate model.glb\n  gnomon validate gen:city:1M --budget 120 --max-rays 10k\n"
+      "  gnomon validate model.glb --rays-in rays.gnr");
   command->callback(
       [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
 }

@@ -16,6 +16,11 @@ class CameraView {
   // Through the picture at (x, y) in pixels from the top left; unit direction, tmin 0, no end.
   [[nodiscard]] Ray ray(double x, double y) const;
 
+  // Directions through the picture are corner() + x right() + y down(), not unit.
+  [[nodiscard]] const Point& corner() const { return corner_; }
+  [[nodiscard]] const Point& right() const { return right_; }
+  [[nodiscard]] const Point& down() const { return down_; }
+
  private:
   Point position_;
   Point corner_;  // direction through the top left

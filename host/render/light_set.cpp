@@ -12,16 +12,6 @@ namespace {
 constexpr double kFairWay = 0.3;    // of the bounds' diagonal
 constexpr double kSkyShare = 0.16;  // sky radiance, as a share of the lights' irradiance
 
-// The sun of ray_set.h's shadow rays, so that pictures and measured rays agree.
-Light default_sun() {
-  Light sun;
-  sun.name = "default sun";
-  sun.kind = LightKind::kDirectional;
-  sun.direction = {-0.4F, -0.8F, -0.45F};
-  sun.color = {3.0F, 2.85F, 2.6F};
-  return sun;
-}
-
 double squared(double x) {
   return x * x;
 }
@@ -48,6 +38,15 @@ Point doubled_area_normal(const Triangle& t) {
 }
 
 }  // namespace
+
+Light default_sun() {
+  Light sun;
+  sun.name = "default sun";
+  sun.kind = LightKind::kDirectional;
+  sun.direction = {-0.4F, -0.8F, -0.45F};
+  sun.color = {3.0F, 2.85F, 2.6F};
+  return sun;
+}
 
 LightSet::LightSet(const Scene& scene, const Bounds& bounds) : triangles_(scene.triangles) {
   const double diagonal =

@@ -18,6 +18,10 @@ struct LightSample {
   Point irradiance;  // on the surface, its slope included
 };
 
+// What lights a scene without lights: the sun of ray_set.h's shadow rays, so that pictures and measured rays
+// agree.
+[[nodiscard]] Light default_sun();
+
 class LightSet {
  public:
   // `bounds` are the scene's. A scene without lights gets a sun.

@@ -1,6 +1,7 @@
-// A picture of a scene through a tree on a device: camera rays, direct light by shadow rays, a sky, matt
-// surfaces, and light that bounced once. Not a path tracer: what bounced more often is a guess. Feeds the
-// command line; it shows the tree at work, and a leak in it as a speck.
+// A picture of a scene through a tree on a device, in one of two ways. A preview: camera rays, direct light
+// by shadow rays, a sky, matt surfaces, light that bounced once, smoothed; what bounced more often is a
+// guess. Or path tracing (path_tracer.h), which guesses nothing and is noisy. Feeds the command line; both
+// show the tree at work, and a leak in it as a speck.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 
 #include "gnomon/base/progress.h"
 #include "gnomon/device/trace_device.h"
+#include "gnomon/render/path_tracer.h"
 #include "gnomon/render/picture.h"
 
 namespace gnomon {
@@ -35,11 +37,16 @@ struct RenderResult {
   std::vector<std::string> notes;  // what was assumed, one sentence each
 };
 
-// Renders through the scene's first camera, or default_camera(scene). `tree` must be built over
+// A preview through the scene's first camera, or default_camera(scene). `tree` must be built over
 // scene.triangles. Works in tiles: rays and hits take a bounded amount of memory, the host keeps 64 bytes a
 // pixel. More than eight lights are sampled. Throws Error: kInvalidArgument (options), kOutOfMemory, kDevice,
 // kCancelled.
 [[nodiscard]] RenderResult render(const cl::Context& context, const DeviceBvh& tree, const Scene& scene,
                                   const RenderOptions& options = {}, const Progress& progress = {});
+
+// The same by path tracing. `observer` sees every ray that is traced.
+[[nodiscard]] RenderResult render_paths(const cl::Context& context, const DeviceBvh& tree, const Scene& scene,
+                                        const RenderOptions& options = {}, const Progress& progress = {},
+                                        const RayObserver& observer = {});
 
 }  // namespace gnomon

@@ -87,7 +87,7 @@ class Exporter {
       Json entry{{"name", material.name},
                  {"pbrMetallicRoughness",
                   {{"baseColorFactor", {color[0], color[1], color[2], 1.0}},
-                   {"metallicFactor", 0.0},
+                   {"metallicFactor", material.metallic},
                    {"roughnessFactor", material.roughness}}},
                  {"doubleSided", true}};
       add_emission(entry, material.emission);

@@ -166,8 +166,10 @@ Json pick_material(Json& material, const std::string& place) {
   if (Json* const pbr = find_object(material, "pbrMetallicRoughness", place)) {
     const std::string path = place + ".pbrMetallicRoughness";
     Json& picked = out["pbrMetallicRoughness"];
-    picked =
-        pick(*pbr, path, {{"baseColorFactor", Kind::kNumbers, false, 4}, {"roughnessFactor", Kind::kNumber}});
+    picked = pick(*pbr, path,
+                  {{"baseColorFactor", Kind::kNumbers, false, 4},
+                   {"metallicFactor", Kind::kNumber},
+                   {"roughnessFactor", Kind::kNumber}});
     if (find_object(*pbr, "baseColorTexture", path) != nullptr) picked["baseColorTexture"] = some_texture;
   }
   if (Json* const strength = find_extension(material, kEmissiveStrength, place)) {

@@ -31,6 +31,7 @@ Material read_material(const tinygltf::Material& source) {
     material.emission[channel] = clamped(source.emissiveFactor[channel] * strength, kMostRadiance);
   }
   material.roughness = clamped(pbr.roughnessFactor, 1.0);
+  material.metallic = clamped(pbr.metallicFactor, 1.0);
   return material;
 }
 

@@ -1,4 +1,4 @@
-// The three values we keep of a glTF material. Not for textures: notes say where some were left out.
+// The four values we keep of a glTF material. Not for textures: notes say where some were left out.
 // Feeds gltf_import.
 #pragma once
 

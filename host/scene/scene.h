@@ -1,4 +1,4 @@
-// A scene as building, tracing and the picture need it: triangles in world space, cameras, lights and three
+// A scene as building, tracing and the picture need it: triangles in world space, cameras, lights and four
 // material values. Not for textures, animation or instancing. Feeds primitives, ray sets, areas and the
 // renderer.
 #pragma once
@@ -16,12 +16,14 @@ namespace gnomon {
 using Triangle = GnTriangle;
 using Vec3 = std::array<float, 3>;
 
-// What a surface looks like: linear RGB reflectance in [0, 1], emitted radiance, roughness in [0, 1].
+// What a surface looks like: linear RGB reflectance in [0, 1], emitted radiance, roughness and metalness in
+// [0, 1] (glTF's metallic-roughness). A surface of roughness 1 that is no metal is matt.
 struct Material {
   std::string name;
   Vec3 base_color{0.8F, 0.8F, 0.8F};
   Vec3 emission{0.0F, 0.0F, 0.0F};
   float roughness = 1.0F;
+  float metallic = 0.0F;
 };
 
 // A perspective camera. forward and up are unit and orthogonal.

@@ -83,6 +83,6 @@ TEST_CASE("stability --rows writes all rows or none") {
 }
 
 TEST_CASE("render -o writes a whole picture or none") {
-  fail_calls({"render", "gen:random:300", "--width", "32", "--height", "24", "--samples", "1", "-o"},
+  fail_calls({"render", "gen:random:300", "--width", "32", "--height", "24", "--preview", "1", "-o"},
              "picture.png", 1.3, 4);
 }

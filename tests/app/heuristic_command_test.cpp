@@ -150,7 +150,7 @@ TEST_CASE("a picture is the same whatever rays its tree is for") {
   const program::Folder folder;
   const auto render = [&](const std::string& name, const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"render", "gen:cottage:8k", "-o", folder.file(name), "--width",
-                                       "48",     "--height",       "32", "--samples",       "1",
+                                       "48",     "--height",       "32", "--preview",       "1",
                                        "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const auto outcome = run(arguments);

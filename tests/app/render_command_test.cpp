@@ -2,6 +2,7 @@
 #include <stb_image.h>
 
 #include <catch2/catch.hpp>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -79,6 +80,104 @@ TEST_CASE("the same seed gives the same picture, another seed another") {
   CHECK(picture("c.png", "2") != first);
 }
 
+TEST_CASE("paths make a picture that has no guesses in it, the same for the same seed") {
+  const Folder folder;
+  const auto picture = [&](const std::string& name, const std::string& seed) {
+    const auto outcome =
+        run({"render", "gen:cottage:8k", "-o", folder.file(name), "--heat-map", folder.file("heat.png"),
+             "--width", "40", "--height", "30", "--samples", "3", "--seed", seed, "--json"});
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.status == 0);
+    const json document = json::parse(outcome.out);
+    CHECK(document.at("options").at("method") == "paths");
+    CHECK(document.at("options").at("samples") == 3);
+    CHECK(document.at("camera_rays") == 3 * 40 * 30);
+    CHECK(document.at("rays").get<int>() > 2 * 3 * 40 * 30);
+    CHECK(document.at("record").is_null());
+    CHECK(document.at("heat_map").at("mean_boxes").get<double>() > 1.0);
+    CHECK(decode(folder.file(name)).colors() > 100);
+    return program::read_text(folder.file(name));
+  };
+  const std::string first = picture("a.png", "1");
+  CHECK(picture("b.png", "1") == first);
+  CHECK(picture("c.png", "2") != first);
+}
+
+TEST_CASE("a record holds what it says, and trace and validate take it") {
+  const Folder folder;
+  const auto render = [&](const std::string& name) {
+    return run({"render", "gen:cottage:8k", "-o", folder.file("a.png"), "--width", "40", "--height", "30",
+                "--samples", "3", "--record", folder.file(name), "--record-rays", "2000", "--json"});
+  };
+  const auto outcome = render("rays.gnr");
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const json document = json::parse(outcome.out);
+  const json record = document.at("record");
+  CHECK(record.at("rays") == 2000);
+  std::uint64_t traced = 0;
+  std::map<std::string, std::uint64_t> stored;
+  for (const json& stratum : record.at("strata")) {
+    traced += stratum.at("traced").get<std::uint64_t>();
+    stored[stratum.at("kind")] += stratum.at("stored").get<std::uint64_t>();
+    CHECK(stratum.at("light").is_null() == (stratum.at("kind") != "shadow"));
+  }
+  CHECK(traced == document.at("rays"));
+  REQUIRE(stored.size() == 3);
+  CHECK(program::read_text(folder.file("rays.gnr")).size() ==
+        64 + 32 * record.at("strata").size() + std::size_t{32} * 2000);
+  REQUIRE(render("again.gnr").status == 0);
+  CHECK(program::read_text(folder.file("again.gnr")) == program::read_text(folder.file("rays.gnr")));
+
+  const auto trace = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        "trace", "gen:cottage:8k", "--rays-in", folder.file("rays.gnr"), "--repeat", "1", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto traced_rays = run(arguments);
+    CAPTURE(traced_rays.err);
+    REQUIRE(traced_rays.status == 0);
+    return json::parse(traced_rays.out);
+  };
+  CHECK(trace({}).at("rays") == 2000);
+  CHECK(trace({}).at("options").at("query") == "closest");
+  const json shadow = trace({"--kinds", "shadow"});
+  CHECK(shadow.at("rays") == stored["shadow"]);
+  CHECK(shadow.at("options").at("query") == "any");
+  CHECK(shadow.at("invalid_rays") == 0);
+  CHECK(trace({"--kinds", "camera,bounce"}).at("rays") == stored["camera"] + stored["bounce"]);
+  const auto judged = run({"validate", "gen:cottage:8k", "--rays-in", folder.file("rays.gnr"), "--kinds",
+                           "shadow,bounce", "--max-rays", "200", "--json"});
+  CAPTURE(judged.err);
+  REQUIRE(judged.status == 0);
+  const json kinds = json::parse(judged.out).at("kinds");
+  REQUIRE(kinds.size() == 2);
+  CHECK(kinds[0].at("kind") == "bounce");
+  CHECK(kinds[1].at("rays") == stored["shadow"]);
+}
+
+TEST_CASE("records that cannot be had or used are refused") {
+  const Folder folder;
+  const std::string record = folder.file("rays.gnr");
+  CHECK(run({"render", "gen:random:100", "-o", folder.file("a.png"), "--record", record}).status == 2);
+  CHECK(run({"render", "gen:random:100", "-o", folder.file("a.png"), "--samples", "1", "--preview", "1"})
+            .status == 2);
+  CHECK(run({"trace", "gen:random:100", "--kinds", "shadow"}).status == 2);
+  program::write_text(folder.file("raw"), std::string(64, '\0'));
+  CHECK(run({"trace", "gen:random:100", "--rays-in", folder.file("raw"), "--kinds", "shadow"}).status == 2);
+  REQUIRE(run({"render", "gen:random:100", "-o", folder.file("a.png"), "--samples", "1", "--width", "8",
+               "--height", "8", "--record", record})
+              .status == 0);
+  const auto none = run({"trace", "gen:random:100", "--rays-in", record, "--kinds", "other"});
+  CHECK(none.status == 4);
+  CHECK_THAT(none.err, Contains("holds no other rays"));
+  std::string bytes = program::read_text(record);
+  bytes[100] = static_cast<char>(bytes[100] ^ 1);
+  program::write_text(record, bytes);
+  const auto damaged = run({"validate", "gen:random:100", "--rays-in", record});
+  CHECK(damaged.status == 4);
+  CHECK_THAT(damaged.err, Contains("checksum"));
+}
+
 TEST_CASE("what a scene lacks is made up and said, unless --quiet") {
   const Folder folder;
   program::write_text(folder.file("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -109,14 +208,19 @@ TEST_CASE("Ctrl-C stops a long render, exits 130 and leaves no file") {
   program::Setup setup;
   setup.terminal = true;
   setup.interrupt_at = "render";
-  const auto outcome = run({"render", "gen:random:1k", "-o", folder.file("never.png"), "--samples", "4096",
-                            "--width", "1000", "--height", "1000"},
-                           setup);
-  CAPTURE(outcome.err);
-  CHECK(outcome.status == 130);
-  CHECK(outcome.out.empty());
-  CHECK_THAT(outcome.err, Contains(" %") && Contains("cancelled"));
-  CHECK(folder.names().empty());
+  for (const std::vector<std::string>& how :
+       {std::vector<std::string>{"--preview", "4096"},
+        std::vector<std::string>{"--samples", "4096", "--record", folder.file("never.gnr")}}) {
+    std::vector<std::string> arguments{"render",  "gen:random:1k", "-o",       folder.file("never.png"),
+                                       "--width", "1000",          "--height", "1000"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    const auto outcome = run(arguments, setup);
+    CAPTURE(outcome.err);
+    CHECK(outcome.status == 130);
+    CHECK(outcome.out.empty());
+    CHECK_THAT(outcome.err, Contains(" %") && Contains("cancelled"));
+    CHECK(folder.names().empty());
+  }
 }
 
 TEST_CASE("progress is drawn on terminals only, and not when --quiet") {

@@ -106,6 +106,7 @@ TEST_CASE("every generated scene comes back with the same triangles, bit for bit
       REQUIRE(near(material.base_color, wanted.base_color));
       REQUIRE(near(material.emission, wanted.emission));
       REQUIRE(material.roughness == Approx(wanted.roughness));
+      REQUIRE(material.metallic == wanted.metallic);
     }
   }
 }

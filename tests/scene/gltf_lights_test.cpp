@@ -138,17 +138,22 @@ TEST_CASE("a directional light has the direction light travels in") {
   CHECK(scene.lights.at(0).color == Vec3{3, 3, 3});
 }
 
-TEST_CASE("materials keep base color, emission and roughness, clamped to what they may be") {
+TEST_CASE("materials keep base color, emission, roughness and metalness, clamped to what they may be") {
   GltfBuilder builder = one_triangle();
   builder.primitive()["material"] = 1;
   builder.json["materials"] = {
       {{"name", "Plain"}},
       {{"name", "Red"},
-       {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 2, -1, 1}}, {"roughnessFactor", 0.25}}}}};
+       {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 2, -1, 1}}, {"roughnessFactor", 0.25}}}},
+      {{"name", "Tin"}, {"pbrMetallicRoughness", {{"metallicFactor", 0.25}}}},
+      {{"name", "Odd"}, {"pbrMetallicRoughness", {{"metallicFactor", -3}}}}};
   const Scene scene = load(builder);
-  REQUIRE(scene.materials.size() == 2);
+  REQUIRE(scene.materials.size() == 4);
   CHECK(scene.materials[0].base_color == Vec3{1, 1, 1});
   CHECK(scene.materials[0].roughness == 1);
+  CHECK(scene.materials[0].metallic == 1);  // glTF's default
+  CHECK(scene.materials[2].metallic == 0.25F);
+  CHECK(scene.materials[3].metallic == 0);
   CHECK(scene.materials[1].name == "Red");
   CHECK(scene.materials[1].base_color == Vec3{0.5F, 1, 0});
   CHECK(scene.materials[1].roughness == 0.25F);

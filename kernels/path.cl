@@ -1,0 +1,115 @@
+// A path tracer in wavefronts: every kernel does one thing for all paths of a batch, and rays are traced by the
+// tracer's own kernels in between. Paths that have ended, and shadow rays that need not be asked, are packed out by a
+// stable prefix sum (scan_values of radix_sort.cl), so a batch's order never depends on the device. One work-item per
+// path, or per chunk.
+#include "shared/path_math.h"
+
+#define GN_PATH_TABLES \
+  __global const GnPathFrame *frame, __global const GnTriangle *triangles, __global const uint *surface_ids, \
+      __global const GnSurface *surfaces, __global const GnPathLight *lights, __global const GnEmitter *emitters, \
+      __global const GnEmitterLink *links
+
+#define GN_COLLECT_TABLES(tables) \
+  tables.frame = frame; \
+  tables.triangles = triangles; \
+  tables.surface_ids = surface_ids; \
+  tables.surfaces = surfaces; \
+  tables.lights = lights; \
+  tables.emitters = emitters; \
+  tables.links = links
+
+// Paths [0, count) of a batch: its cells, one after another, sample after sample.
+__kernel void begin_paths(GN_PATH_TABLES, __global GnPath* paths, __global GnRay* rays, __global uint* owners,
+                          uint first_cell, uint cells, uint first_sample, uint count) {
+  const uint i = (uint)get_global_id(0);
+  if (i < count) {
+    GnPathTables tables;
+    GnPath path;
+    GnRay ray;
+    GN_COLLECT_TABLES(tables);
+    gn_begin_path(&tables, first_cell + i % cells, first_sample + i / cells, &path, &ray);
+    paths[i] = path;
+    rays[i] = ray;
+    owners[i] = i;
+  }
+}
+
+// owners: the path of each ray. Writes the ray that each path goes on with, and the shadow ray it wants asked.
+__kernel void step_paths(GN_PATH_TABLES, __global GnPath* paths, __global const GnRay* rays, __global const GnHit* hits,
+                         __global const uint* owners, __global GnRay* next_rays, __global GnRay* shadow_rays,
+                         __global GnLit* lit, uint bounce, uint count) {
+  const uint i = (uint)get_global_id(0);
+  if (i < count) {
+    GnPathTables tables;
+    GnPath path = paths[owners[i]];
+    const GnRay ray = rays[i];
+    const GnHit hit = hits[i];
+    GnRay next, shadow;
+    GnLit brought;
+    brought.radiance[0] = brought.radiance[1] = brought.radiance[2] = 0.0f;
+    brought.light = GN_NONE;
+    GN_COLLECT_TABLES(tables);
+    gn_path_step(&tables, &ray, &hit, bounce, &path, &next, &shadow, &brought);
+    paths[owners[i]] = path;
+    next_rays[i] = next;
+    shadow_rays[i] = shadow;
+    lit[owners[i]] = brought;
+  }
+}
+
+// How many rays of each chunk are any.
+__kernel void count_rays(__global const GnRay* rays, __global uint* counts, uint count, uint chunk_size) {
+  const uint chunk = (uint)get_global_id(0);
+  const uint begin = min(count, chunk * chunk_size);
+  const uint end = begin + min(count - begin, chunk_size);
+  uint i, sum = 0u;
+  if (begin == end) return;
+  for (i = begin; i < end; ++i) sum += rays[i].tmin <= rays[i].tmax ? 1u : 0u;
+  counts[chunk] = sum;
+}
+
+// Moves those together, and their owners with them. counts: summed up.
+__kernel void pack_rays(__global const GnRay* rays, __global const uint* owners, __global const uint* counts,
+                        __global GnRay* packed, __global uint* packed_owners, uint count, uint chunk_size) {
+  const uint chunk = (uint)get_global_id(0);
+  const uint begin = min(count, chunk * chunk_size);
+  const uint end = begin + min(count - begin, chunk_size);
+  uint i, place;
+  if (begin == end) return;
+  place = counts[chunk];
+  for (i = begin; i < end; ++i) {
+    if (rays[i].tmin <= rays[i].tmax) {
+      packed[place] = rays[i];
+      packed_owners[place] = owners[i];
+      place += 1u;
+    }
+  }
+}
+
+// Adds what free shadow rays bring.
+__kernel void add_light(__global GnPath* paths, __global const uint* owners, __global const uint* occluded,
+                        __global const GnLit* lit, uint count) {
+  const uint i = (uint)get_global_id(0);
+  if (i < count) {
+    const uint owner = owners[i];
+    int k;
+    if (occluded[i] != 0u) return;
+    for (k = 0; k < 3; ++k) paths[owner].radiance[k] = paths[owner].radiance[k] + lit[owner].radiance[k];
+  }
+}
+
+// Adds a batch's paths to their pixels, in the order of samples. film: radiance, and how many paths met a surface.
+__kernel void add_to_film(__global const GnPathFrame* frame, __global const GnPath* paths, __global float4* film,
+                          uint first_cell, uint cells, uint samples) {
+  const uint i = (uint)get_global_id(0);
+  if (i < cells) {
+    const uint pixel = gn_pixel_of(frame, first_cell + i);
+    uint s;
+    if (pixel == GN_NONE) return;
+    for (s = 0u; s < samples; ++s) {
+      const GnPath path = paths[s * cells + i];
+      film[pixel] =
+          film[pixel] + (float4)(path.radiance[0], path.radiance[1], path.radiance[2], path.seen != 0u ? 1.0f : 0.0f);
+    }
+  }
+}

@@ -31,7 +31,7 @@ using bench::RayCase;
 using nlohmann::json;
 
 struct Settings {
-  std::string configs, models, only;
+  std::string configs, models, only, query;
   std::vector<std::string> scenes{"atrium", "city", "forest", "crowd", "cottage"};
   std::uint64_t triangles = 100'000;
   std::uint64_t rays = 2048;
@@ -68,7 +68,9 @@ class Bench {
   Bench(const Settings& settings, const AwareSetUp& set_up) : settings_(settings), set_up_(set_up) {}
 
   void run() {
-    for (const RayCase& rays : set_up_.cases) run_case(rays);
+    for (const RayCase& rays : set_up_.cases) {
+      if (settings_.query.empty() || settings_.query == to_string(rays.query)) run_case(rays);
+    }
   }
 
  private:
@@ -148,7 +150,7 @@ void run_thesis(const Settings& settings) {
     const auto [at, fresh] = scenes.try_emplace(set_up.scene);
     const std::string source = scene_source_of(set_up.scene);
     if (fresh && !source.starts_with("gen:")) at->second = import_scene(settings.models + "/" + source);
-    if (fresh && source.starts_with("gen:")) at->second = generate_scene(source.substr(4), 1000, 1);
+    if (fresh && source.starts_with("gen:")) at->second = generate_scene(source.substr(4), source == "gen:random100" ? 100 : 1000, 1);
     const AwareSetUp made = bench::thesis_set_up(set_up, at->second, settings.rays);
     Bench(settings, made).run();
   }
@@ -175,6 +177,7 @@ int main(int argc, char** argv) {
   CLI::App* const generated = app.add_subcommand("generated", "generated scenes");
   generated->add_option("--scenes", settings.scenes)->delimiter(',');
   generated->add_option("--triangles", settings.triangles);
+  app.add_option("--query", settings.query, "closest, any or every alone");
   app.add_option("--rays", settings.rays, "to measure on");
   app.add_option("--expected", settings.expected, "rays that trees must repay themselves over");
   app.add_option("--fit-rays", settings.plan.fit_rays);

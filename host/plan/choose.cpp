@@ -178,6 +178,13 @@ const std::vector<std::string>& candidate_names() {
   return names;
 }
 
+OptimiseOptions thorough() {
+  OptimiseOptions options;
+  options.share = 0.25F;
+  options.max_passes = 12;
+  return options;
+}
+
 void PlanOptions::check() const {
   const auto& names = candidate_names();
   std::string all = "auto";

@@ -37,14 +37,17 @@ struct PlanPrices {
   double byte = 0.05;          // of a tree that is held beside the baseline
 };
 
+// More than the best builder takes: what stands last should be hard to beat.
+[[nodiscard]] OptimiseOptions thorough();
+
 struct PlanOptions {
   std::string choice = "auto";  // or the name of one of candidate_names(), which is then kept without a test
   std::uint32_t fit_rays = 512;     // 1..kMostSegments
   std::uint32_t probe_rays = 1024;  // at most; 1..65536
-  float mixture_share = 0.75F;      // of the rays' own measure beside surface area; [0, 1]
-  float prior_share = 0.5F;         // SampleMeasure's
-  OptimiseOptions optimise;         // passes by areas; face_weights are set by the plan
-  OptimiseOptions optimise_rays;    // passes by sampled rays
+  float mixture_share = 0.9F;       // of the rays' own measure beside surface area; [0, 1]
+  float prior_share = 0.25F;        // SampleMeasure's
+  OptimiseOptions optimise = thorough();       // passes by areas, the baseline's too; the plan sets face_weights
+  OptimiseOptions optimise_rays = thorough();  // passes by sampled rays
   RaceOptions race;
   PlanPrices prices;
   std::uint64_t seed = 1;           // of the order in which probes run

@@ -14,6 +14,7 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
 void add_validate_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_render_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_stability_command(CLI::App& program, OutputOptions& output, Action& action);
+void add_plan_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_reproduce_command(CLI::App& program, OutputOptions& output, Action& action);
 
 }  // namespace gnomon::app

@@ -9,6 +9,7 @@
 #include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
+#include "plan_rays.h"
 #include "ray_batch.h"
 #include "scene_source.h"
 #include "trace_timing.h"
@@ -30,6 +31,8 @@ struct Options {
   bool sort = false;
   std::uint64_t repeat = 5;
   std::string rays_in, rays_out, hits_out;
+  std::string plan;  // empty: the tree of the build options
+  std::uint64_t expected = 16'777'216;
 };
 
 TraceFlavour flavour_from(const std::string& name) {
@@ -69,12 +72,7 @@ std::vector<Ray> rays_of(const Options& options, const Scene& scene, const cl::C
     return make_rays(*ray_kind_from(options.kind), scene, Tracer(context, tree), options.count, options.seed,
                      progress);
   }
-  try {
-    return read_rays(options.rays_in);
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::kIo) throw Error(ErrorCode::kBadScene, error.what());
-    throw;
-  }
+  return read_ray_file(options.rays_in);
 }
 
 void add_trace(Json& document, const Options& options, const TimedTrace& trace, std::size_t rays,
@@ -134,9 +132,51 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
   return facts.text();
 }
 
+// The tree the plan keeps for these rays, where it is another one than the build options' own.
+struct Planned {
+  Plan plan;
+  DeviceBvh tree;
+  [[nodiscard]] const PlanTree& kept() const { return plan.trees[plan.decisions[0].tree]; }
+};
+
+std::optional<Planned> plan_of(const Options& options, const Scene& scene, const cl::Context& context,
+                               const DeviceBvh& tree, std::span<const Ray> rays, bool any_hit,
+                               const Progress& progress) {
+  if (options.plan.empty()) return std::nullopt;
+  PlanOptions how;
+  how.choice = options.plan;
+  how.check();
+  const auto expected = static_cast<double>(options.expected);
+  const Query query = any_hit ? Query::kAny : Query::kClosest;
+  PlanRays asked = options.rays_in.empty()
+                       ? rays_to_plan_for(*ray_kind_from(options.kind), scene, context, tree, expected,
+                                          options.seed, progress)
+                       : rays_to_plan_for(options.rays_in, query, rays, expected);
+  asked.query = query;
+  Planned out;
+  out.plan = make_plan(scene.triangles, std::span(&asked, 1), how, device_builder(context), progress);
+  out.tree = upload_bvh(context, out.kept().tree.bvh, scene.triangles);
+  return out;
+}
+
+// A learnt order is an order of slots, which the binary tree has not.
+void check_plan(const Options& options) {
+  if (options.plan.empty()) return;
+  PlanOptions how;
+  how.choice = options.plan;
+  how.check();
+  if (options.flavour == "thread" && options.plan != "sah") {
+    throw Error(ErrorCode::kInvalidArgument,
+                "--flavour thread looks at the nearer child first whatever was learnt; use wide, packet, compact or "
+                "auto with --plan " +
+                    options.plan);
+  }
+}
+
 int run(const Options& options, Console& console) {
   options.build.check();
   check(options.heuristic);
+  check_plan(options);
   const bool any_hit = wants_any_hit(options);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
@@ -144,8 +184,13 @@ int run(const Options& options, Console& console) {
   const TimedBuild build = build_for_use(context, scene, tree, {1, true}, console.progress());
   const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
   stop_if_interrupted();
-  const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, how_to_trace(options),
-                                       options.repeat, console.progress());
+  const std::optional<Planned> planned =
+      plan_of(options, scene, context, build.tree, rays, any_hit, console.progress());
+  stop_if_interrupted();
+  const TimedTrace trace =
+      trace_timed(context, planned ? planned->tree : build.tree, rays, any_hit, how_to_trace(options),
+                  options.repeat, console.progress(),
+                  planned ? std::span<const float>(planned->kept().tree.ranks) : std::span<const float>());
   stop_if_interrupted();
   if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
   if (!options.hits_out.empty()) write_hits(options.hits_out, trace.hits);
@@ -156,9 +201,12 @@ int run(const Options& options, Console& console) {
   add_heuristic(document, options.heuristic, scene);
   add_build(document, build);
   add_trace(document, options, trace, rays.size(), any_hit);
+  document["options"]["plan"] = planned ? Json(options.plan) : Json(nullptr);
+  document["plan"] = planned ? Json::parse(to_json(planned->plan)) : Json(nullptr);
   console.print(document);
   console.print(facts_of(options, context.device(), scene, describe(options.heuristic, tree, scene), build,
-                         trace, rays.size(), any_hit));
+                         trace, rays.size(), any_hit) +
+                (planned ? "\nplan\n" + plan_table(planned->plan) : std::string()));
   return 0;
 }
 
@@ -216,6 +264,12 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
                     "order. Pays for rays in no order, such as bounces from all over the picture");
   add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")
       ->check(CLI::Range(1, 10000));
+  command
+      ->add_option("--plan", options->plan,
+                   "trace through the tree that these rays need: auto, or one by name (gnomon plan --help). The build "
+                   "options' tree then only says where rays start")
+      ->type_name("NAME");
+  add_expected_rays(*command, options->expected);
   add_build_options(*command, options->build);
   add_heuristic_options(*command, options->heuristic);
   add_device_options(*command, options->device);

@@ -194,7 +194,8 @@ void PlanOptions::check() const {
   require(fit_rays >= 1 && fit_rays <= kMostSegments, "fit_rays", std::to_string(fit_rays),
           "1.." + std::to_string(kMostSegments));
   require(probe_rays >= 1 && probe_rays <= 65536, "probe_rays", std::to_string(probe_rays), "1..65536");
-  require(mixture_share >= 0.0F && mixture_share <= 1.0F, "mixture_share", std::to_string(mixture_share), "[0, 1]");
+  for (const float share : {mixture_share, every_share})
+    require(share >= 0.0F && share <= 1.0F, "mixture_share or every_share", std::to_string(share), "[0, 1]");
   SampleMeasure{{1.0F, 1.0F, 1.0F}, prior_share}.check();
   optimise.check();
   optimise_rays.check();

@@ -45,6 +45,7 @@ struct PlanOptions {
   std::uint32_t fit_rays = 512;     // 1..kMostSegments
   std::uint32_t probe_rays = 1024;  // at most; 1..65536
   float mixture_share = 0.9F;       // of the rays' own measure beside surface area; [0, 1]
+  float every_share = 0.99F;        // the same for Query::kEvery, whose cost that measure is
   float prior_share = 0.25F;        // SampleMeasure's
   OptimiseOptions optimise = thorough();       // passes by areas, the baseline's too; the plan sets face_weights
   OptimiseOptions optimise_rays = thorough();  // passes by sampled rays

@@ -56,7 +56,7 @@ void PlanPool::aim_at(const PlanRays& rays) {
   }
   fit_ = thinned(fit_, options_.fit_rays);
   segments_ = segments_of(baseline_.tree.bvh, triangles_, fit_, query_);
-  weights_ = mixed_weights(fit_, options_.mixture_share);
+  weights_ = mixed_weights(fit_, query_ == Query::kEvery ? options_.every_share : options_.mixture_share);
 }
 
 double PlanPool::expected_cost() const {

@@ -52,8 +52,9 @@ std::string cell(const std::vector<double>& ratios) {
   if (ratios.empty()) return " – |";
   const auto wins = std::count_if(ratios.begin(), ratios.end(), [](double r) { return r < 1.0 - kEven; });
   const auto losses = std::count_if(ratios.begin(), ratios.end(), [](double r) { return r > 1.0 + kEven; });
-  return " " + number(geomean(ratios), "%.3f") + " (" + std::to_string(wins) + "/" + std::to_string(losses) + ", " +
-         number(*std::max_element(ratios.begin(), ratios.end()), "%.3f") + ") |";
+  std::string out(" ");
+  out += number(geomean(ratios), "%.3f") + " (" + std::to_string(wins) + "/" + std::to_string(losses) + ", ";
+  return out + number(*std::max_element(ratios.begin(), ratios.end()), "%.3f") + ") |";
 }
 
 std::string name_of(const std::string& query) {
@@ -140,7 +141,7 @@ class Page {
       worst = c.set_up + ", " + c.rays;
     }
     std::string out = "\nKept:";
-    for (const auto& [name, count] : kept) out += " " + name + " " + std::to_string(count) + ",";
+    for (const auto& [name, count] : kept) out.append(" ").append(name).append(" ").append(std::to_string(count)).append(",");
     out.back() = '.';
     return out + " Regret of the choice against the best of the pool: " + number(geomean(regret), "%.4f") + ", at most " +
            number(most, "%.3f") + " (" + worst + "). Planning took " + number(geomean(planning), "%.1f") +
@@ -155,8 +156,9 @@ class Page {
         if (plan.at("kept") != "sah") continue;
         double best = c.cost("sah");
         for (const auto& [tree, row] : c.trees) best = std::min(best, row.at("cost").get<double>());
-        out += "| " + name + " | " + c.set_up + ", " + c.rays + " | " + number(best / c.cost("sah"), "%.3f") + " | " +
-               plan.at("reason").get<std::string>() + " |\n";
+        out.append("| ").append(name).append(" | ").append(c.set_up).append(", ").append(c.rays).append(" | ");
+        out.append(number(best / c.cost("sah"), "%.3f")).append(" | ");
+        out.append(plan.at("reason").get<std::string>()).append(" |\n");
       }
     }
     return out;

@@ -19,6 +19,8 @@
 #include "gnomon/device/optimise_device.h"
 #include "gnomon/device/trace_areas.h"
 #include "gnomon/device/trace_device.h"
+#include "gnomon/plan/child_order.h"
+#include "gnomon/plan/choose.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon/scene/gltf_export.h"
 #include "gnomon/scene/import.h"

@@ -1,7 +1,7 @@
 // From the binary tree to the wide one (shared/wide_layout.h): cuts the tree into subtrees, works out from the leaves up
 // what collapsing them costs, then writes wide nodes and triangle blocks from the root down. A wide node's children
 // that are nodes lie side by side, what is below them follows child by child: numbers depend on the tree alone, not
-// on the cuts. One work-item a subtree throughout. Options: GN_COLLAPSE_DEPTH, above the binary tree's depth.
+// on the cuts. One work-item a subtree throughout. slot_keys: one a node of the binary tree, where keys_given. Options: GN_COLLAPSE_DEPTH, above the binary tree's depth.
 #include "ahead.h"
 #include "children_first.h"
 #include "shared/collapse_math.h"
@@ -122,6 +122,7 @@ typedef struct GnTree {
   __global GnWideNode* wide_nodes;
   __global GnTriangleBlock* blocks;
   GnCollapseCosts costs;
+  GnSlotKeys keys;
 } GnTree;
 
 // Wide nodes not yet written, their numbers, and the next free numbers below them.
@@ -196,7 +197,7 @@ static inline void emit_node(const GnTree* tree, GnEmission* work, int write) {
   const uint depth = work->depths[top] + 1u;
   __global GnWideNode* out = tree->wide_nodes + work->places[top];
   uint slot, inner = 0u, entered = 0u;
-  gn_open_wide_node(tree->nodes, tree->forests, work->roots[top], tree->costs, &slots);
+  gn_open_wide_node(tree->nodes, tree->forests, work->roots[top], tree->costs, &tree->keys, &slots);
   for (slot = 0u; slot < slots.count; ++slot) inner += slots.triangles[slot] == 0u;
   if (write) write_empty_node(out);
   for (slot = 0u; slot < slots.count; ++slot) {
@@ -264,8 +265,10 @@ static inline void expect_subtree(const GnTree* tree, uint root, int triangles) 
 
 #define GN_TREE_PARAMETERS                                                                                         \
   __global const GnNode *nodes, __global const GnForest *forests, __global const GnLeafTriangle *triangles,         \
-      __global GnWideNode *wide_nodes, __global GnTriangleBlock *blocks, float node_cost, float block_cost
-#define GN_TREE {nodes, forests, triangles, wide_nodes, blocks, {node_cost, block_cost}}
+      __global GnWideNode *wide_nodes, __global GnTriangleBlock *blocks, float node_cost, float block_cost,                   \
+      __global const float *slot_keys, uint keys_given
+#define GN_TREE \
+  {nodes, forests, triangles, wide_nodes, blocks, {node_cost, block_cost}, {slot_keys, keys_given}}
 
 // One work-item, twice. Goes through the wide nodes above subtrees of at most `limit` triangles. First (write == 0) it
 // lists those subtrees; then, knowing what each holds, it writes the nodes above and tells each where to write.

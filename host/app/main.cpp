@@ -86,6 +86,7 @@ int run(int argc, char** argv) {
   add_info_command(program, output, action);
   add_build_command(program, output, action);
   add_trace_command(program, output, action);
+  add_plan_command(program, output, action);
   add_validate_command(program, output, action);
   add_render_command(program, output, action);
   add_compare_command(program, output, action);

@@ -16,6 +16,9 @@ namespace gnomon::app {
 [[nodiscard]] std::vector<Ray> make_rays(RayKind kind, const Scene& scene, const Tracer& tracer,
                                          std::uint64_t count, std::uint64_t seed, const Progress& progress);
 
+// As read_rays, but a file that cannot be read is a bad ray file. Throws Error{kBadScene}.
+[[nodiscard]] std::vector<Ray> read_ray_file(const std::string& file);
+
 // The kinds' names, and a text for --help that explains them.
 [[nodiscard]] std::vector<std::string> ray_kind_names();
 [[nodiscard]] std::string explain_ray_kinds();

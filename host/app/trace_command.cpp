@@ -9,6 +9,7 @@
 #include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
+#include "plan_rays.h"
 #include "ray_batch.h"
 #include "scene_source.h"
 #include "trace_timing.h"
@@ -33,6 +34,8 @@ struct Options {
   std::uint64_t repeat = 5;
   RayFileOptions rays_in;
   std::string rays_out, hits_out;
+  std::string plan;  // empty: the tree of the build options
+  std::uint64_t expected = 16'777'216;
 };
 
 TraceFlavour flavour_from(const std::string& name) {
@@ -139,9 +142,52 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
   return facts.text();
 }
 
+// The tree the plan keeps for these rays, where it is another one than the build options' own.
+struct Planned {
+  Plan plan;
+  DeviceBvh tree;
+  [[nodiscard]] const PlanTree& kept() const { return plan.trees[plan.decisions[0].tree]; }
+};
+
+std::optional<Planned> plan_of(const Options& options, const Scene& scene, const cl::Context& context,
+                               const DeviceBvh& tree, std::span<const Ray> rays, bool any_hit,
+                               const Progress& progress) {
+  if (options.plan.empty()) return std::nullopt;
+  PlanOptions how;
+  how.choice = options.plan;
+  how.check();
+  const auto expected = static_cast<double>(options.expected);
+  const Query query = any_hit ? Query::kAny : Query::kClosest;
+  PlanRays asked = options.rays_in.file.empty()
+                       ? rays_to_plan_for(*ray_kind_from(options.kind), scene, context, tree, expected,
+                                          options.seed, progress)
+                       : rays_to_plan_for(options.rays_in.file, query, rays, expected);
+  asked.query = query;
+  Planned out;
+  out.plan = make_plan(scene.triangles, std::span(&asked, 1), how, device_builder(context), progress);
+  out.tree = upload_bvh(context, out.kept().tree.bvh, scene.triangles);
+  return out;
+}
+
+// A learnt order is an order of slots, which the binary tree has not.
+void check_plan(const Options& options) {
+  if (options.plan.empty()) return;
+  PlanOptions how;
+  how.choice = options.plan;
+  how.check();
+  if (options.flavour == "thread" && options.plan != "sah") {
+    throw Error(
+        ErrorCode::kInvalidArgument,
+        "--flavour thread looks at the nearer child first whatever was learnt; use wide, packet, compact or "
+        "auto with --plan " +
+            options.plan);
+  }
+}
+
 int run(const Options& options, Console& console) {
   options.build.check();
   check(options.heuristic);
+  check_plan(options);
   const bool any_hit = wants_any_hit(options);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
@@ -151,8 +197,13 @@ int run(const Options& options, Console& console) {
   const BuildOptions& tree = build.options;
   const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
   stop_if_interrupted();
-  const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, how_to_trace(options),
-                                       options.repeat, console.progress());
+  const std::optional<Planned> planned =
+      plan_of(options, scene, context, build.tree, rays, any_hit, console.progress());
+  stop_if_interrupted();
+  const TimedTrace trace =
+      trace_timed(context, planned ? planned->tree : build.tree, rays, any_hit, how_to_trace(options),
+                  options.repeat, console.progress(),
+                  planned ? std::span<const float>(planned->kept().tree.ranks) : std::span<const float>());
   stop_if_interrupted();
   if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
   if (!options.hits_out.empty()) write_hits(options.hits_out, trace.hits);
@@ -164,9 +215,12 @@ int run(const Options& options, Console& console) {
   add_build(document, build);
   add_tree_file(document, build);
   add_trace(document, options, trace, rays.size(), any_hit);
+  document["options"]["plan"] = planned ? Json(options.plan) : Json(nullptr);
+  document["plan"] = planned ? Json::parse(to_json(planned->plan)) : Json(nullptr);
   console.print(document);
   console.print(facts_of(options, context.device(), scene, describe(options.heuristic, tree, scene), build,
-                         trace, rays.size(), any_hit));
+                         trace, rays.size(), any_hit) +
+                (planned ? "\nplan\n" + plan_table(planned->plan) : std::string()));
   return 0;
 }
 
@@ -225,6 +279,13 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
                     "order. Pays for rays in no order, such as bounces from all over the picture");
   add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")
       ->check(CLI::Range(1, 10000));
+  command
+      ->add_option(
+          "--plan", options->plan,
+          "trace through the tree that these rays need: auto, or one by name (gnomon plan --help). The build "
+          "options' tree then only says where rays start")
+      ->type_name("NAME");
+  add_expected_rays(*command, options->expected);
   add_build_options(*command, options->build);
   add_heuristic_options(*command, options->heuristic);
   add_tree_file_option(*command, options->tree_file);

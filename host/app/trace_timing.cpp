@@ -34,10 +34,14 @@ void count_work(TimedTrace& timed, const TraceResult& counted) {
 }  // namespace
 
 TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::span<const Ray> rays,
-                       bool any_hit, const TraceOptions& how, std::uint64_t repeat,
-                       const Progress& progress) {
+                       bool any_hit, const TraceOptions& how, std::uint64_t repeat, const Progress& progress,
+                       std::span<const float> slot_keys) {
   TraceOptions options = how;
-  const Tracer tracer(context, tree, options);
+  const DeviceWideBvh keyed = slot_keys.empty() ? DeviceWideBvh{} : collapse_device(context, tree, {}, nullptr, slot_keys);
+  const auto tracer_of = [&] {
+    return slot_keys.empty() ? Tracer(context, tree, options) : Tracer(context, keyed, options);
+  };
+  const Tracer tracer = tracer_of();
   TimedTrace timed;
   timed.flavour = tracer.flavour();
   TraceResult last = trace_once(tracer, rays, any_hit, progress);
@@ -61,7 +65,7 @@ TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::s
   timed.invalid_rays = last.invalid_rays;
   if (how.accuracy == Accuracy::kFast) {
     options.accuracy = Accuracy::kWatertight;
-    const TraceResult exact = trace_once(Tracer(context, tree, options), rays, any_hit, progress);
+    const TraceResult exact = trace_once(tracer_of(), rays, any_hit, progress);
     timed.cost =
         any_hit ? difference_of(exact.occluded, last.occluded) : difference_of(exact.hits, last.hits);
     options.accuracy = how.accuracy;
@@ -69,7 +73,7 @@ TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::s
   timed.hits = std::move(last.hits);
 
   options.counters = true;
-  count_work(timed, trace_once(Tracer(context, tree, options), rays, any_hit, progress));
+  count_work(timed, trace_once(tracer_of(), rays, any_hit, progress));
   return timed;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "gnomon/device/build_device.h"
 #include "gnomon/tree/wide.h"
@@ -20,11 +21,13 @@ struct DeviceWideBvh {
   [[nodiscard]] std::uint64_t bytes() const { return nodes.bytes + blocks.bytes; }
 };
 
-// The bytes depend on the tree and the options alone. Throws Error: kInvalidArgument (options; a leaf of more
-// than GN_MAX_WIDE_LEAF triangles; a device that ends the loops this takes), kOutOfMemory, kDevice.
+// The bytes depend on the tree, the options and the keys alone (wide.h says what keys are). Throws Error:
+// kInvalidArgument (options; keys; a leaf of more than GN_MAX_WIDE_LEAF triangles; a device that ends the loops this
+// takes), kOutOfMemory, kDevice.
 [[nodiscard]] DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
                                             const CollapseOptions& options = {},
-                                            BuildReport* report = nullptr);
+                                            BuildReport* report = nullptr,
+                                            std::span<const float> slot_keys = {});
 
 // Copies a wide tree to the host.
 [[nodiscard]] WideBvh download_wide(const cl::Context& context, const DeviceWideBvh& tree);

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "gnomon/base/error.h"
 #include "gnomon/shared/hit_math.h"
 #include "gnomon/tree/reference_batch.h"
 
@@ -16,8 +17,14 @@ struct Waiting {
 
 class Walk {
  public:
-  Walk(const Bvh& bvh, std::span<const Triangle> triangles, const Ray& ray, bool any_hit)
-      : bvh_(bvh), triangles_(triangles), ray_(ray), any_hit_(any_hit), frame_(gn_ray_frame(&ray)) {
+  Walk(const Bvh& bvh, std::span<const Triangle> triangles, const Ray& ray, bool any_hit,
+       std::span<const float> ranks)
+      : bvh_(bvh),
+        triangles_(triangles),
+        ray_(ray),
+        any_hit_(any_hit),
+        ranks_(any_hit ? ranks : std::span<const float>{}),
+        frame_(gn_ray_frame(&ray)) {
     limit_ = gn_slab_limit(ray.tmax);
   }
 
@@ -49,11 +56,12 @@ class Walk {
     return gn_box_entry(&frame_, node.lo, node.hi, ray_.tmin, limit_);
   }
 
-  // The nearer child is tested next; of equals the left one.
+  // The nearer child, or the one of higher rank, is tested next; of equals the left one.
   void push_children(const Node& node, std::vector<Waiting>& waiting) {
     const Waiting left{node.first, entry_of(node.first)};
     const Waiting right{node.first + 1, entry_of(node.first + 1)};
-    const bool left_first = left.entry <= right.entry;
+    const bool left_first =
+        ranks_.empty() ? left.entry <= right.entry : ranks_[left.node] >= ranks_[right.node];
     for (const Waiting& child : {left_first ? right : left, left_first ? left : right}) {
       if (child.entry < GN_INFINITY) waiting.push_back(child);
     }
@@ -80,6 +88,7 @@ class Walk {
   std::span<const Triangle> triangles_;
   const Ray& ray_;
   bool any_hit_;
+  std::span<const float> ranks_;
   GnRayFrame frame_;
   float limit_ = 0.0F;
 };
@@ -87,8 +96,12 @@ class Walk {
 }  // namespace
 
 ReferenceTrace trace_reference(const Bvh& bvh, std::span<const Triangle> triangles, std::span<const Ray> rays,
-                               bool any_hit) {
-  return trace_by(rays, [&](const Ray& ray) { return Walk(bvh, triangles, ray, any_hit); });
+                               bool any_hit, std::span<const float> ranks) {
+  if (!ranks.empty() && ranks.size() != bvh.nodes.size()) {
+    throw Error(ErrorCode::kInvalidArgument, std::to_string(ranks.size()) + " ranks for a tree of " +
+                                                 std::to_string(bvh.nodes.size()) + " nodes; learn them from this tree");
+  }
+  return trace_by(rays, [&](const Ray& ray) { return Walk(bvh, triangles, ray, any_hit, ranks); });
 }
 
 }  // namespace gnomon

@@ -3,6 +3,7 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -37,8 +38,12 @@ WideNode empty_node() {
 
 class Collapse {
  public:
-  Collapse(const Bvh& bvh, std::span<const GnTriangle> triangles, const CollapseOptions& options)
-      : bvh_(bvh), triangles_(triangles), costs_{options.cost_node, options.cost_block} {
+  Collapse(const Bvh& bvh, std::span<const GnTriangle> triangles, const CollapseOptions& options,
+           std::span<const float> slot_keys)
+      : bvh_(bvh),
+        triangles_(triangles),
+        costs_{options.cost_node, options.cost_block},
+        keys_{slot_keys.data(), slot_keys.empty() ? 0U : 1U} {
     forests_.resize(bvh.nodes.size() / 2);
     weigh();
   }
@@ -80,7 +85,7 @@ class Collapse {
   // all that is below it. Depth is that of the tree: recursion is shallow.
   void emit(std::uint32_t root, std::uint32_t place, std::uint32_t depth) {
     GnSlots slots;
-    gn_open_wide_node(bvh_.nodes.data(), forests_.data(), root, costs_, &slots);
+    gn_open_wide_node(bvh_.nodes.data(), forests_.data(), root, costs_, &keys_, &slots);
     wide_.depth = std::max(wide_.depth, depth);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> inner;
     for (std::uint32_t slot = 0; slot < slots.count; ++slot) {
@@ -122,6 +127,7 @@ class Collapse {
   const Bvh& bvh_;
   std::span<const GnTriangle> triangles_;
   GnCollapseCosts costs_;
+  GnSlotKeys keys_;
   std::vector<GnForest> forests_;
   WideBvh wide_;
 };
@@ -153,6 +159,17 @@ void throw_leaf_too_large(std::uint32_t triangles) {
                                                "; build with smaller leaves or trace the binary tree");
 }
 
+void check_slot_keys(std::span<const float> slot_keys, std::size_t nodes) {
+  if (!slot_keys.empty() && slot_keys.size() != nodes) {
+    throw Error(ErrorCode::kInvalidArgument, std::to_string(slot_keys.size()) + " slot keys for a tree of " +
+                                                 std::to_string(nodes) + " nodes; give one a node or none");
+  }
+  const auto bad = std::find_if(slot_keys.begin(), slot_keys.end(), [](float key) { return std::isnan(key); });
+  if (bad == slot_keys.end()) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              "slot key " + std::to_string(bad - slot_keys.begin()) + " is NaN; keys must have an order");
+}
+
 void CollapseOptions::check() const {
   check_cost("cost_node", cost_node);
   check_cost("cost_block", cost_block);
@@ -164,10 +181,11 @@ void CollapseOptions::check() const {
 }
 
 WideBvh collapse_reference(const Bvh& bvh, std::span<const GnTriangle> triangles,
-                           const CollapseOptions& options) {
+                           const CollapseOptions& options, std::span<const float> slot_keys) {
   options.check();
+  check_slot_keys(slot_keys, bvh.nodes.size());
   if (bvh.nodes.empty()) return {{empty_node()}, {}, 1};
-  return Collapse(bvh, triangles, options).run();
+  return Collapse(bvh, triangles, options, slot_keys).run();
 }
 
 WideStats stats_of(const WideBvh& wide) {

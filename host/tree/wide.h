@@ -39,8 +39,14 @@ struct WideBvh {
 // Leaves of the binary tree may hold up to GN_MAX_WIDE_LEAF triangles; others make it throw
 // Error{kInvalidArgument}. Collapses with the least expected cost under the surface area heuristic (Ylitie,
 // Karras, Laine 2017). Same bytes as the device's.
+// A node's slots are in order of area, or of `slot_keys`, one a node of `bvh` (gnomon/plan/child_order.h): any hit
+// looks at the last one first. Throws Error{kInvalidArgument} also for another number of keys or one that is NaN.
 [[nodiscard]] WideBvh collapse_reference(const Bvh& bvh, std::span<const GnTriangle> triangles,
-                                         const CollapseOptions& options = {});
+                                         const CollapseOptions& options = {},
+                                         std::span<const float> slot_keys = {});
+
+// Throws as collapse_reference for keys of a tree of so many nodes; none are fine.
+void check_slot_keys(std::span<const float> slot_keys, std::size_t nodes);
 
 [[noreturn]] void throw_leaf_too_large(std::uint32_t triangles);
 
@@ -57,11 +63,13 @@ struct WideStats {
 
 // The first broken promise, or nothing: links in range and each node and block reached once, boxes that hold
 // their triangles and lie inside the parent's, every triangle once with its corners, empty slots inverted and
-// last, slots in order of area, depth. Any bytes may come in.
+// last, slots in order of area unless they have keys, depth. Any bytes may come in.
 // Where triangles may be in several leaves (Builder::kBest), these need only hold all of one between them.
 enum class Repeats { kNone, kAllowed };
+enum class SlotOrder { kByArea, kByKeys };
 [[nodiscard]] std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles,
-                                                 Repeats repeats = Repeats::kNone);
+                                                 Repeats repeats = Repeats::kNone,
+                                                 SlotOrder order = SlotOrder::kByArea);
 
 // XXH3-64 of nodes and blocks, 16 hex digits.
 [[nodiscard]] std::string tree_hash(const WideBvh& wide);

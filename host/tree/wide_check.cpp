@@ -52,8 +52,8 @@ bool holds(const Node& box, const float point[3]) {
 
 class Check {
  public:
-  Check(const WideBvh& wide, std::span<const GnTriangle> triangles, Repeats repeats)
-      : wide_(wide), triangles_(triangles), repeats_(repeats), boxes_(triangles.size()) {}
+  Check(const WideBvh& wide, std::span<const GnTriangle> triangles, Repeats repeats, SlotOrder order)
+      : wide_(wide), triangles_(triangles), repeats_(repeats), slot_order_(order), boxes_(triangles.size()) {}
 
   MaybeFault run() {
     if (MaybeFault found = check_sizes()) return found;
@@ -151,7 +151,8 @@ class Check {
       }
       if (!holds(box, box.lo)) return fault("box: NaN or inverted, slot " + text(slot), index);
       const float own = gn_half_area(&box);
-      if (area > own) return fault("slots: slot " + text(slot) + " is smaller than the one before it", index);
+      if (area > own && slot_order_ == SlotOrder::kByArea)
+        return fault("slots: slot " + text(slot) + " is smaller than the one before it", index);
       area = own;
     }
     return std::nullopt;
@@ -212,6 +213,7 @@ class Check {
   const WideBvh& wide_;
   std::span<const GnTriangle> triangles_;
   Repeats repeats_;
+  SlotOrder slot_order_;
   TriangleBoxes boxes_;
   std::vector<char> node_seen_, block_seen_, triangle_seen_;
   std::vector<std::uint32_t> order_;
@@ -221,8 +223,8 @@ class Check {
 }  // namespace
 
 std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles,
-                                   Repeats repeats) {
-  return Check(wide, triangles, repeats).run();
+                                   Repeats repeats, SlotOrder order) {
+  return Check(wide, triangles, repeats, order).run();
 }
 
 }  // namespace gnomon

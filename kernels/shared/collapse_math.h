@@ -81,22 +81,32 @@ GN_INLINE GnForest gn_forest_of(GN_GLOBAL const GnNode* nodes, GN_GLOBAL const G
 typedef struct GnSlots {
   gn_u32 node[8];
   gn_u32 triangles[8];
-  gn_f32 area[8];
+  gn_f32 key[8];
   gn_u32 count;
 } GnSlots;
 
-// Enters a child behind all that are no larger.
-GN_INLINE void gn_enter_slot(GnSlots* slots, gn_u32 node, gn_u32 triangles, gn_f32 area) {
+// What decides a child's slot: its area, or a key a node of the caller's (any hit looks at the largest first).
+typedef struct GnSlotKeys {
+  GN_GLOBAL const gn_f32* of_nodes;
+  gn_u32 given;  // 0: areas
+} GnSlotKeys;
+
+GN_INLINE gn_f32 gn_slot_key(GN_GLOBAL const GnNode* nodes, gn_u32 node, const GnSlotKeys* keys) {
+  return keys->given != 0u ? keys->of_nodes[node] : gn_half_area(nodes + node);
+}
+
+// Enters a child behind all whose key is no larger.
+GN_INLINE void gn_enter_slot(GnSlots* slots, gn_u32 node, gn_u32 triangles, gn_f32 key) {
   gn_u32 place = slots->count;
-  while (place > 0u && slots->area[place - 1u] > area) {
+  while (place > 0u && slots->key[place - 1u] > key) {
     slots->node[place] = slots->node[place - 1u];
     slots->triangles[place] = slots->triangles[place - 1u];
-    slots->area[place] = slots->area[place - 1u];
+    slots->key[place] = slots->key[place - 1u];
     place -= 1u;
   }
   slots->node[place] = node;
   slots->triangles[place] = triangles;
-  slots->area[place] = area;
+  slots->key[place] = key;
   slots->count += 1u;
 }
 
@@ -108,10 +118,10 @@ GN_INLINE gn_u32 gn_leaf_triangles(GN_GLOBAL const GnNode* node, const GnForest*
                                                                                                   : 0u;
 }
 
-// The children of the wide node that replaces `root`: at most eight, in order of area. A root that is a leaf is its
-// own only child.
+// The children of the wide node that replaces `root`: at most eight, in order of their keys. A root that is a leaf
+// is its own only child.
 GN_INLINE void gn_open_wide_node(GN_GLOBAL const GnNode* nodes, GN_GLOBAL const GnForest* forests, gn_u32 root,
-                                 GnCollapseCosts costs, GnSlots* slots) {
+                                 GnCollapseCosts costs, const GnSlotKeys* keys, GnSlots* slots) {
   gn_u32 waiting[8], budgets[8], height = 1u;
   waiting[0] = root;
   budgets[0] = nodes[root].count > 0u ? 1u : 8u;
@@ -123,14 +133,14 @@ GN_INLINE void gn_open_wide_node(GN_GLOBAL const GnNode* nodes, GN_GLOBAL const 
     gn_f32 cost;
     height -= 1u;
     if (nodes[node].count > 0u) {
-      gn_enter_slot(slots, node, nodes[node].count, gn_half_area(nodes + node));
+      gn_enter_slot(slots, node, nodes[node].count, gn_slot_key(nodes, node, keys));
       continue;
     }
     if (budget < 8u) {
       forest = gn_forest_of(nodes, forests, node, costs.block);
       while (budget > 1u && forest.cost[budget - 1u] == forest.cost[budget - 2u]) budget -= 1u;
       if (budget == 1u) {
-        gn_enter_slot(slots, node, gn_leaf_triangles(nodes + node, &forest, costs.block), gn_half_area(nodes + node));
+        gn_enter_slot(slots, node, gn_leaf_triangles(nodes + node, &forest, costs.block), gn_slot_key(nodes, node, keys));
         continue;
       }
     }

@@ -1,0 +1,199 @@
+// The question: which trees cost given rays less than the best surface-area tree, and does the plan choose them? Every
+// candidate of gnomon/plan on the thesis' set-ups and on generated scenes, by counts. JSON rows on stdout, one a set-up,
+// kind of rays and tree.
+//
+//   ray_aware_bench thesis --configs CONFIGS.json --scenes DIR [--only WORD]
+//   ray_aware_bench generated [--scenes atrium,city] [--triangles 100000]
+//
+// Cost of a ray: 1.0 a box test, 1.2 a triangle test; two boxes a node visited, the root's not counted. Trees are fitted
+// to rays of one seed, chosen by those of another and measured on a third's.
+#include <CLI/CLI.hpp>
+
+#include <array>
+#include <cstdio>
+#include <map>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "gnomon/plan/choose.h"
+#include "gnomon/scene/generators.h"
+#include "gnomon/scene/import.h"
+#include "gnomon/tree/build_reference.h"
+#include "gnomon_commit.h"
+#include "ray_aware/set_ups.h"
+
+namespace {
+
+using namespace gnomon;
+using bench::AwareSetUp;
+using bench::RayCase;
+using nlohmann::json;
+
+struct Settings {
+  std::string configs, models, only, query;
+  std::vector<std::string> scenes{"atrium", "city", "forest", "crowd", "cottage"};
+  std::uint64_t triangles = 100'000;
+  std::uint64_t rays = 2048;
+  double expected = 16'777'216.0;  // 64 a pixel of 512 x 512
+  PlanOptions plan;
+};
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+// The reference builder, which makes the baseline of a set-up once.
+class Builder {
+ public:
+  [[nodiscard]] PlanBuilder get() {
+    PlanBuilder out = reference_builder();
+    out.build = [this](std::span<const Triangle> triangles, const BuildOptions& options) {
+      const float* w = options.measure.weights;
+      const auto [at, fresh] = known_.try_emplace({w[0], w[1], w[2]});
+      if (fresh) at->second = build_reference(triangles, options);
+      return at->second;
+    };
+    return out;
+  }
+
+ private:
+  std::map<std::array<float, 3>, Bvh> known_;
+};
+
+class Bench {
+ public:
+  Bench(const Settings& settings, const AwareSetUp& set_up) : settings_(settings), set_up_(set_up) {}
+
+  void run() {
+    for (const RayCase& rays : set_up_.cases) {
+      if (settings_.query.empty() || settings_.query == to_string(rays.query)) run_case(rays);
+    }
+  }
+
+ private:
+  void run_case(const RayCase& rays) {
+    PlanOptions options = settings_.plan;
+    options.keep_tried = true;
+    const std::vector<PlanRays> asked{
+        {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, settings_.expected}};
+    const Plan plan = make_plan(set_up_.triangles, asked, options, builder_.get());
+    const Decision& decision = plan.decisions.front();
+    const OrderedTree& baseline = plan.trees.front().tree;
+    const std::vector<Hit> expected =
+        trace_reference(baseline.bvh, set_up_.triangles, rays.draws.measure, rays.query == Query::kAny).hits;
+    json start = {{"schema", 1},
+                  {"bench", "ray_aware"},
+                  {"commit", GNOMON_COMMIT},
+                  {"family", set_up_.family},
+                  {"set_up", set_up_.name},
+                  {"triangles", set_up_.triangles.size()},
+                  {"rays", rays.rays},
+                  {"query", to_string(rays.query)},
+                  {"measured_rays", rays.draws.measure.size()}};
+    row(start, "sah", baseline, rays, expected, json::object());
+    for (const Trial& trial : decision.trials) {
+      const PlanTree& tree = plan.trees[trial.tree];
+      row(start, trial.name, tree.tree, rays, expected,
+          {{"fit_gain", trial.fit_gain},
+           {"probe_gain", trial.standing.baseline > 0.0 ? 1.0 - trial.standing.cost / trial.standing.baseline : 0.0},
+           {"verdict", to_string(trial.standing.verdict)},
+           {"price_units", trial.price},
+           {"build_units", tree.build_units}});
+      // The same tree, near child first: what the order alone brings.
+      if (rays.query == Query::kAny && trial.name != "sah-order")
+        row(start, trial.name + " near", {tree.tree.bvh, {}}, rays, expected, json::object());
+    }
+    row(start, "auto", plan.trees[decision.tree].tree, rays, expected,
+        {{"kept", decision.kept},
+         {"reason", decision.reason},
+         {"probes", decision.probes},
+         {"baseline_units", plan.baseline_units},
+         {"planning_units", plan.planning_units},
+         {"probe_units", decision.probe_units}});
+    std::fflush(stdout);
+  }
+
+  void row(json out, const std::string& tree, const OrderedTree& in, const RayCase& rays,
+           const std::vector<Hit>& expected, const json& more) const {
+    const bool any = rays.query == Query::kAny;
+    const std::vector<Hit> hits =
+        trace_reference(in.bvh, set_up_.triangles, rays.draws.measure, any, in.ranks).hits;
+    std::uint64_t different = 0;
+    std::uint64_t met = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const bool same = any ? (hits[i].primitive == GN_NONE) == (expected[i].primitive == GN_NONE)
+                            : hits[i].primitive == expected[i].primitive && hits[i].t == expected[i].t &&
+                                  hits[i].u == expected[i].u && hits[i].v == expected[i].v;
+      different += same ? 0 : 1;
+      met += hits[i].primitive != GN_NONE ? 1 : 0;
+    }
+    out["tree"] = tree;
+    out["cost"] = mean_of(ray_costs(in, set_up_.triangles, rays.draws.measure, rays.query));
+    out["hit_share"] = static_cast<double>(met) / static_cast<double>(hits.size());
+    out["different_hits"] = different;
+    out.update(more);
+    std::printf("%s\n", out.dump().c_str());
+  }
+
+  const Settings& settings_;
+  const AwareSetUp& set_up_;
+  Builder builder_;
+};
+
+void run_thesis(const Settings& settings) {
+  std::map<std::string, Scene> scenes;
+  for (const SetUp& set_up : read_set_ups(settings.configs)) {
+    if (is_lost(set_up.scene) || set_up.label().find(settings.only) == std::string::npos) continue;
+    const auto [at, fresh] = scenes.try_emplace(set_up.scene);
+    const std::string source = scene_source_of(set_up.scene);
+    if (fresh && !source.starts_with("gen:")) at->second = import_scene(settings.models + "/" + source);
+    if (fresh && source.starts_with("gen:")) at->second = generate_scene(source.substr(4), source == "gen:random100" ? 100 : 1000, 1);
+    const AwareSetUp made = bench::thesis_set_up(set_up, at->second, settings.rays);
+    Bench(settings, made).run();
+  }
+}
+
+void run_generated(const Settings& settings) {
+  for (const std::string& name : settings.scenes) {
+    const AwareSetUp made =
+        bench::generated_set_up(name, generate_scene(name, settings.triangles, 1), settings.rays);
+    Bench(settings, made).run();
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Trees for given rays beside the best surface-area tree, by counts.");
+  Settings settings;
+  app.require_subcommand(1);
+  CLI::App* const thesis = app.add_subcommand("thesis", "the thesis' set-ups");
+  thesis->add_option("--configs", settings.configs)->required();
+  thesis->add_option("--scenes", settings.models)->required();
+  thesis->add_option("--only", settings.only, "set-ups whose label has this");
+  CLI::App* const generated = app.add_subcommand("generated", "generated scenes");
+  generated->add_option("--scenes", settings.scenes)->delimiter(',');
+  generated->add_option("--triangles", settings.triangles);
+  app.add_option("--query", settings.query, "closest, any or every alone");
+  app.add_option("--rays", settings.rays, "to measure on");
+  app.add_option("--expected", settings.expected, "rays that trees must repay themselves over");
+  app.add_option("--fit-rays", settings.plan.fit_rays);
+  app.add_option("--mixture", settings.plan.mixture_share);
+  app.add_option("--prior", settings.plan.prior_share);
+  app.add_option("--ray-passes", settings.plan.optimise_rays.max_passes);
+  app.add_option("--ray-share", settings.plan.optimise_rays.share);
+  app.add_option("--passes", settings.plan.optimise.max_passes);
+  app.add_option("--share", settings.plan.optimise.share);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    if (thesis->parsed()) run_thesis(settings);
+    if (generated->parsed()) run_generated(settings);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

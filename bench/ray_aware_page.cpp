@@ -1,0 +1,195 @@
+// Writes the page of trees for given rays from the rows of ray_aware_bench, and from nothing else; or checks that the page
+// is what the rows give.
+//
+//   ray_aware_page ROWS.jsonl PAGE.md [--check]
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace {
+
+using nlohmann::json;
+
+constexpr double kEven = 0.005;  // ratios this near 1 are neither a win nor a loss
+
+std::string read(const char* path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw std::runtime_error(std::string("cannot read ") + path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string number(double value, const char* format) {
+  char text[40];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+// The trees of one set-up's rays, by name.
+struct Case {
+  std::string set_up;
+  std::string rays;
+  std::map<std::string, json> trees;
+  [[nodiscard]] bool has(const std::string& tree) const { return trees.count(tree) > 0; }
+  [[nodiscard]] double cost(const std::string& tree) const { return trees.at(tree).at("cost").get<double>(); }
+};
+
+double geomean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += std::log(value);
+  return std::exp(sum / static_cast<double>(values.size()));
+}
+
+std::string cell(const std::vector<double>& ratios) {
+  if (ratios.empty()) return " – |";
+  const auto wins = std::count_if(ratios.begin(), ratios.end(), [](double r) { return r < 1.0 - kEven; });
+  const auto losses = std::count_if(ratios.begin(), ratios.end(), [](double r) { return r > 1.0 + kEven; });
+  std::string out(" ");
+  out += number(geomean(ratios), "%.3f") + " (" + std::to_string(wins) + "/" + std::to_string(losses) + ", ";
+  return out + number(*std::max_element(ratios.begin(), ratios.end()), "%.3f") + ") |";
+}
+
+std::string name_of(const std::string& query) {
+  if (query == "every") return "every box on the way";
+  return query == "closest" ? "closest hit" : query;
+}
+
+class Page {
+ public:
+  explicit Page(const std::string& rows) {
+    std::istringstream lines(rows);
+    for (std::string line; std::getline(lines, line);) {
+      const json row = json::parse(line);
+      const std::string query = row.at("query");
+      const std::string rays = row.at("rays");
+      // Any-hit cases are told apart by their rays.
+      const std::string kind = query == "any" ? (rays == "lit" ? "unoccluded shadow rays" : "shadow rays, any hit")
+                                              : name_of(query);
+      const std::string key = row.at("set_up").get<std::string>() + "/" + rays + "/" + query;
+      Case& found = groups_[row.at("family").get<std::string>() + ": " + kind][key];
+      found.set_up = row.at("set_up");
+      found.rays = rays;
+      found.trees[row.at("tree").get<std::string>()] = row;
+      different_ += row.at("different_hits").get<std::uint64_t>();
+      commit_ = row.at("commit");
+      rows_ += 1;
+    }
+  }
+
+  [[nodiscard]] std::string text() const {
+    std::string out =
+        "# Trees for given rays\n\nWritten by `ray_aware_page` from `ray_aware.jsonl` (" + std::to_string(rows_) +
+        " rows of `ray_aware_bench`, commit " + commit_.substr(0, 12) +
+        ").\n\nCost of a ray: 1.0 a box test and 1.2 a triangle test, two boxes a node visited, the root's not counted. "
+        "Trees are fitted to\nrays of one seed, chosen by those of another, measured on a third's. Cells: geometric mean "
+        "of the cost over the baseline's (wins/losses\nbeyond 0.5 %, worst). Baseline: three axes, surface area, "
+        "reinsertion by surface area, near child first. Hits that differ from the\nbaseline's, all rows together: " +
+        std::to_string(different_) + ".\n";
+    for (const auto& [name, cases] : groups_) out += table(name, cases);
+    return out + nothing_helps();
+  }
+
+ private:
+  using Cases = std::map<std::string, Case>;
+
+  static std::vector<double> ratios(const Cases& cases, const std::string& tree, const std::string& to) {
+    std::vector<double> out;
+    for (const auto& [key, c] : cases)
+      if (c.has(tree) && c.has(to)) out.push_back(c.cost(tree) / c.cost(to));
+    return out;
+  }
+
+  static std::string table(const std::string& name, const Cases& cases) {
+    const bool any = !ratios(cases, "sah-order", "sah").empty();
+    std::string out = "\n## " + name + ", " + std::to_string(cases.size()) + " cases\n\n| tree | of the baseline |" +
+                      (any ? std::string(" near child first | of the baseline in its own learnt order |\n|---|---|---|---|\n")
+                           : std::string("\n|---|---|\n"));
+    for (const char* const tree : {"sah-order", "sah-mix", "sah-rays", "mix", "mix-rays", "auto"}) {
+      const std::vector<double> own = ratios(cases, tree, "sah");
+      if (own.empty()) continue;
+      out += std::string("| ") + tree + " |" + cell(own);
+      if (any) out += cell(ratios(cases, std::string(tree) + " near", "sah")) + cell(ratios(cases, tree, "sah-order"));
+      out += "\n";
+    }
+    return out + summary(cases);
+  }
+
+  // What was kept, and how far that is from the best of the pool.
+  static std::string summary(const Cases& cases) {
+    std::map<std::string, int> kept;
+    std::vector<double> regret;
+    std::vector<double> planning;
+    std::string worst;
+    double most = 0.0;
+    for (const auto& [key, c] : cases) {
+      const json& plan = c.trees.at("auto");
+      kept[plan.at("kept").get<std::string>()] += 1;
+      double best = c.cost("sah");
+      for (const auto& [name, row] : c.trees) best = std::min(best, row.at("cost").get<double>());
+      regret.push_back(c.cost("auto") / best);
+      planning.push_back(plan.at("planning_units").get<double>() / plan.at("baseline_units").get<double>());
+      if (regret.back() <= most) continue;
+      most = regret.back();
+      worst = c.set_up + ", " + c.rays;
+    }
+    std::string out = "\nKept:";
+    for (const auto& [name, count] : kept) out.append(" ").append(name).append(" ").append(std::to_string(count)).append(",");
+    out.back() = '.';
+    return out + " Regret of the choice against the best of the pool: " + number(geomean(regret), "%.4f") + ", at most " +
+           number(most, "%.3f") + " (" + worst + "). Planning took " + number(geomean(planning), "%.1f") +
+           " times the baseline's build, in counts.\n";
+  }
+
+  [[nodiscard]] std::string nothing_helps() const {
+    std::string out = "\n## Where the baseline is kept\n\n| rays | set-up | best of the pool | why |\n|---|---|---|---|\n";
+    for (const auto& [name, cases] : groups_) {
+      for (const auto& [key, c] : cases) {
+        const json& plan = c.trees.at("auto");
+        if (plan.at("kept") != "sah") continue;
+        double best = c.cost("sah");
+        for (const auto& [tree, row] : c.trees) best = std::min(best, row.at("cost").get<double>());
+        out.append("| ").append(name).append(" | ").append(c.set_up).append(", ").append(c.rays).append(" | ");
+        out.append(number(best / c.cost("sah"), "%.3f")).append(" | ");
+        out.append(plan.at("reason").get<std::string>()).append(" |\n");
+      }
+    }
+    return out;
+  }
+
+  std::map<std::string, Cases> groups_;
+  std::uint64_t different_ = 0;
+  std::uint64_t rows_ = 0;
+  std::string commit_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: ray_aware_page ROWS.jsonl PAGE.md [--check]\n");
+    return 2;
+  }
+  try {
+    const std::string text = Page(read(argv[1])).text();
+    if (argc > 3 && std::string(argv[3]) == "--check") {
+      if (read(argv[2]) == text) return 0;
+      std::fprintf(stderr, "%s is not what %s gives; run ray_aware_page %s %s\n", argv[2], argv[1], argv[1], argv[2]);
+      return 1;
+    }
+    std::ofstream out(argv[2], std::ios::binary);
+    out << text;
+    if (!out.flush()) throw std::runtime_error(std::string("cannot write ") + argv[2]);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

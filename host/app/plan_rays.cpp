@@ -1,0 +1,93 @@
+#include "plan_rays.h"
+
+#include "gnomon/device/optimise_device.h"
+#include "gnomon/device/trace_device.h"
+#include "numbers.h"
+#include "options.h"
+#include "ray_batch.h"
+#include "table.h"
+
+namespace gnomon::app {
+
+namespace {
+
+// As many as plans can take and a race can want; kinds that need hits get fewer than they ask for.
+constexpr std::uint64_t kDrawnRays = 4096;
+
+}  // namespace
+
+const char* const kPlanHelp =
+    "Trees to choose from:\n"
+    "  sah        three axes, surface area, subtrees moved; near child first: the baseline\n"
+    "  sah-order  the same tree; any hit looks first where sampled rays were stopped for the least work\n"
+    "  sah-mix    subtrees moved on, by surface area mixed with how the rays see boxes\n"
+    "  sah-rays   and then by sampled rays\n"
+    "  mix        built by that mixture from the start\n"
+    "  mix-rays   and then by sampled rays\n"
+    "All but sah have the learnt order for any hit. auto tries them on rays drawn apart, keeps one that is surely 2 %\n"
+    "cheaper than sah and repays its price over the rays to come, and else keeps sah. Costs are counts, 1.0 a box\n"
+    "and 1.2 a triangle, in the binary tree: the same plan on every machine.\n";
+
+PlanBuilder device_builder(const cl::Context& context) {
+  PlanBuilder out;
+  // Triangles go to the device again with each tree: plans make a handful.
+  out.build = [&context](std::span<const Triangle> triangles, const BuildOptions& options) {
+    return download_bvh(context, build_device(context, triangles, options));
+  };
+  out.optimise = [&context](const Bvh& bvh, const OptimiseOptions& options) {
+    if (bvh.nodes.empty()) return bvh;
+    // Reinsertion reads boxes and leaf order; corners it only carries along.
+    std::size_t most = 0;
+    for (const std::uint32_t primitive : bvh.primitives) most = std::max<std::size_t>(most, primitive + 1);
+    const std::vector<Triangle> corners(most);
+    return download_bvh(context, optimise_device(context, upload_bvh(context, bvh, corners), options));
+  };
+  return out;
+}
+
+PlanRays rays_to_plan_for(RayKind kind, const Scene& scene, const cl::Context& context, const DeviceBvh& tree,
+                          double expected, std::uint64_t seed, const Progress& progress) {
+  const Tracer tracer(context, tree);
+  PlanRays out;
+  out.name = std::string(to_string(kind));
+  out.query = asks_any_hit(kind) ? Query::kAny : Query::kClosest;
+  out.fit = make_rays(kind, scene, tracer, kDrawnRays, seed + 1, progress);
+  out.probe = make_rays(kind, scene, tracer, kDrawnRays, seed + 2, progress);
+  out.expected = expected;
+  return out;
+}
+
+PlanRays rays_to_plan_for(const std::string& name, Query query, std::span<const Ray> recorded,
+                          double expected) {
+  PlanRays out{name, query, {}, {}, expected};
+  for (std::size_t i = 0; i < recorded.size(); ++i) (i % 2 == 0 ? out.fit : out.probe).push_back(recorded[i]);
+  return out;
+}
+
+std::string plan_table(const Plan& plan) {
+  std::string text;
+  for (const Decision& decision : plan.decisions) {
+    text += decision.rays + ", " + (decision.query == Query::kAny ? "any hit" : "closest hit") + ": " +
+            decision.kept + "\n  " + decision.reason + "\n";
+    if (decision.trials.empty()) continue;
+    Table table({"tree", "cost a ray", "of sah", "+-", "probes", "verdict", "price", "saves"});
+    table.add({"sah", fixed(decision.baseline_cost, 2), "1.000", "", std::to_string(decision.probes), "", "", ""});
+    for (const Trial& trial : decision.trials) {
+      const double base = trial.standing.baseline;
+      const auto of_base = [&](double value) { return base > 0.0 ? fixed(value / base, 3) : std::string("-"); };
+      table.add({trial.name, fixed(trial.standing.cost, 2), of_base(trial.standing.cost),
+                 of_base(trial.standing.error), std::to_string(trial.standing.rays),
+                 to_string(trial.standing.verdict), fixed(trial.price, 0), fixed(trial.saving, 0)});
+    }
+    text += table.text();
+  }
+  const double share = plan.baseline_units > 0.0 ? plan.planning_units / plan.baseline_units : 0.0;
+  return text + "planning took " + fixed(plan.planning_units, 0) + " units, " + fixed(share, 2) +
+         " of building the baseline\n";
+}
+
+void add_expected_rays(CLI::App& command, std::uint64_t& expected) {
+  add_count(command, "--expect", expected, "rays of a kind to come, that a tree must repay itself over");
+}
+
+}  // namespace gnomon::app

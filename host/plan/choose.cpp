@@ -1,0 +1,234 @@
+#include "gnomon/plan/choose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "gnomon/base/error.h"
+#include "gnomon/plan/plan_pool.h"
+#include "gnomon/scene/steady_random.h"
+#include "gnomon/tree/build_reference.h"
+
+namespace gnomon {
+
+namespace {
+
+// No tree saves more than this share of a good one's cost: what a candidate is given to hope for before it is made.
+constexpr double kMostSaved = 0.5;
+
+void require(bool ok, const std::string& option, const std::string& value, const std::string& range) {
+  if (ok) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              "plan option " + option + " = " + value + " is outside its range " + range);
+}
+
+std::string number(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string percent(double share) {
+  return number(100.0 * share, 1) + " %";
+}
+
+// The probes in random order, so that any first few of them stand for all.
+std::vector<Ray> shuffled(std::vector<Ray> rays, std::uint64_t seed) {
+  SteadyRandom random(seed);
+  for (std::size_t i = rays.size(); i > 1; --i)
+    std::swap(rays[i - 1], rays[random.below(static_cast<unsigned>(i))]);
+  return rays;
+}
+
+// Decides for one kind of rays.
+class Chooser {
+ public:
+  // Trees go to the end of `trees`.
+  Chooser(std::span<const Triangle> triangles, const PlanRays& rays, const PlanOptions& options, PlanPool& pool,
+          std::vector<PlanTree>& trees)
+      : triangles_(triangles), rays_(rays), options_(options), pool_(pool), trees_(trees) {
+    pool_.aim_at(rays);
+    probes_ = shuffled(thinned(rays.probe, options.probe_rays), options.seed);
+    decision_.rays = rays.name;
+    decision_.query = rays.query;
+    decision_.expected = rays.expected;
+    decision_.kept = "sah";
+  }
+
+  Decision run() {
+    if (options_.choice == "auto") {
+      if (gather()) judge();
+    } else if (options_.choice == "sah") {
+      decision_.reason = "asked for";
+    } else {
+      take(options_.choice);
+    }
+    return std::move(decision_);
+  }
+
+
+ private:
+  void take(const std::string& name) {
+    if (name == "sah-order" && rays_.query != Query::kAny) {
+      decision_.reason = "an order of children serves any hit alone";
+      return;
+    }
+    PlanPool::Entry entry = pool_.make(name);
+    decision_.kept = name;
+    decision_.reason = "asked for";
+    decision_.tree = add(std::move(entry.tree));
+  }
+
+  std::size_t add(PlanTree tree) {
+    trees_.push_back(std::move(tree));
+    return trees_.size() - 1;
+  }
+
+  // Candidates that can pay at all; false where there is none.
+  bool gather() {
+    const double hope = kMostSaved * pool_.expected_cost() * rays_.expected;
+    if (probes_.size() < options_.race.least || rays_.fit.empty()) {
+      decision_.reason = "too few rays to judge by: " + std::to_string(probes_.size()) + " probes";
+      return false;
+    }
+    double cheapest = INFINITY;
+    for (const std::string& name : candidate_names()) {
+      if (name == "sah" || (name == "sah-order" && rays_.query != Query::kAny)) continue;
+      const double price = pool_.least_price(name);
+      cheapest = std::min(cheapest, price);
+      if (hope > 2.0 * price) candidates_.push_back(pool_.make(name));
+    }
+    if (!candidates_.empty()) return true;
+    decision_.reason = number(rays_.expected, 0) + " rays cannot repay another tree: the cheapest costs " +
+                       number(cheapest, 0) + " units, all they do on the baseline about " +
+                       number(hope / kMostSaved, 0);
+    return false;
+  }
+
+  [[nodiscard]] Race run_race() const {
+    return race(candidates_.size(), probes_.size(),
+                [&](std::size_t tree, std::size_t first, std::size_t count) {
+                  const OrderedTree& in = tree == 0 ? pool_.baseline().tree : candidates_[tree - 1].tree.tree;
+                  return ray_costs(in, triangles_, std::span(probes_).subspan(first, count), rays_.query);
+                },
+                options_.race);
+  }
+
+  void judge() {
+    const Race race = run_race();
+    decision_.probes = race.rays;
+    decision_.probe_units = race.units;
+    decision_.baseline_cost = race.baseline;
+    decision_.cost = race.baseline;
+    const double fit = pool_.baseline_fit_cost();
+    std::optional<std::size_t> best;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      Trial trial;
+      trial.name = candidates_[i].tree.name;
+      trial.standing = race.standings[i];
+      trial.fit_gain = fit > 0.0 ? 1.0 - candidates_[i].fit_cost / fit : 0.0;
+      trial.price = candidates_[i].tree.build_units +
+                    options_.prices.byte * static_cast<double>(candidates_[i].tree.bytes);
+      trial.saving = rays_.expected * (trial.standing.baseline - trial.standing.cost);
+      const bool pays = trial.standing.verdict == Verdict::kBetter && trial.saving > trial.price;
+      const auto worth = [](const Trial& t) { return t.saving - t.price; };
+      if (pays && (!best || worth(trial) > worth(decision_.trials[*best]))) best = i;
+      decision_.trials.push_back(std::move(trial));
+    }
+    explain(race, best);
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      const bool kept = best && i == *best;
+      if (!kept && !options_.keep_tried) continue;
+      decision_.trials[i].tree = add(std::move(candidates_[i].tree));
+      if (kept) decision_.tree = decision_.trials[i].tree;
+    }
+  }
+
+  void explain(const Race& race, std::optional<std::size_t> best) {
+    if (!best) {
+      const bool dear = race.winner != 0xffffffffU;
+      decision_.reason = dear ? decision_.trials[race.winner].name + " is cheaper to trace but does not repay its price over " +
+                                    number(rays_.expected, 0) + " rays"
+                              : "no candidate is surely " + percent(options_.race.least_gain) +
+                                    " cheaper than the baseline";
+      return;
+    }
+    const Trial& trial = decision_.trials[*best];
+    decision_.kept = trial.name;
+    decision_.cost = trial.standing.cost * race.baseline / trial.standing.baseline;
+    decision_.reason = percent(1.0 - trial.standing.cost / trial.standing.baseline) +
+                       " cheaper on probe rays; saves " + number(trial.saving, 0) + " units for a price of " +
+                       number(trial.price, 0);
+  }
+
+  std::span<const Triangle> triangles_;
+  const PlanRays& rays_;
+  const PlanOptions& options_;
+  PlanPool& pool_;
+  std::vector<Ray> probes_;
+  std::vector<PlanPool::Entry> candidates_;
+  std::vector<PlanTree>& trees_;
+  Decision decision_;
+};
+
+}  // namespace
+
+const std::vector<std::string>& candidate_names() {
+  static const std::vector<std::string> names{"sah", "sah-order", "sah-mix", "sah-rays", "mix", "mix-rays"};
+  return names;
+}
+
+OptimiseOptions thorough() {
+  OptimiseOptions options;
+  options.share = 0.25F;
+  options.max_passes = 12;
+  return options;
+}
+
+void PlanOptions::check() const {
+  const auto& names = candidate_names();
+  std::string all = "auto";
+  for (const std::string& name : names) all += ", " + name;
+  require(choice == "auto" || std::find(names.begin(), names.end(), choice) != names.end(), "choice", choice,
+          "of " + all);
+  require(fit_rays >= 1 && fit_rays <= kMostSegments, "fit_rays", std::to_string(fit_rays),
+          "1.." + std::to_string(kMostSegments));
+  require(probe_rays >= 1 && probe_rays <= 65536, "probe_rays", std::to_string(probe_rays), "1..65536");
+  for (const float share : {mixture_share, every_share})
+    require(share >= 0.0F && share <= 1.0F, "mixture_share or every_share", std::to_string(share), "[0, 1]");
+  SampleMeasure{{1.0F, 1.0F, 1.0F}, prior_share}.check();
+  optimise.check();
+  optimise_rays.check();
+  race.check();
+  for (const double price : {prices.build, prices.pass, prices.segment_test, prices.byte})
+    require(price >= 0.0 && std::isfinite(price), "prices", std::to_string(price), "of finite numbers >= 0");
+}
+
+PlanBuilder reference_builder() {
+  return {[](std::span<const Triangle> triangles, const BuildOptions& options) {
+            return build_reference(triangles, options);
+          },
+          [](const Bvh& bvh, const OptimiseOptions& options) { return optimise_reference(bvh, options); }};
+}
+
+Plan make_plan(std::span<const Triangle> triangles, std::span<const PlanRays> rays, const PlanOptions& options,
+               const PlanBuilder& builder, const Progress& progress) {
+  options.check();
+  report(progress, "baseline", 0.0);
+  PlanPool pool(triangles, options, builder);
+  Plan plan;
+  plan.trees.push_back(pool.baseline());
+  plan.baseline_units = pool.baseline_units();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    require(rays[i].expected >= 0.0 && std::isfinite(rays[i].expected), "expected rays of " + rays[i].name,
+            std::to_string(rays[i].expected), "of finite numbers >= 0");
+    report(progress, rays[i].name, static_cast<double>(i + 1) / static_cast<double>(rays.size() + 1));
+    Decision decision = Chooser(triangles, rays[i], options, pool, plan.trees).run();
+    plan.planning_units += decision.probe_units;
+    plan.decisions.push_back(std::move(decision));
+  }
+  plan.planning_units += pool.work();
+  return plan;
+}
+
+}  // namespace gnomon

@@ -1,0 +1,100 @@
+#include "gnomon/plan/ray_sample.h"
+
+#include <cmath>
+#include <string>
+
+#include "gnomon/base/error.h"
+#include "gnomon/shared/hit_math.h"
+
+namespace gnomon {
+
+const char* to_string(Query query) {
+  return query == Query::kClosest ? "closest" : query == Query::kAny ? "any" : "every";
+}
+
+std::vector<Ray> thinned(std::span<const Ray> rays, std::uint64_t count) {
+  if (rays.size() <= count) return {rays.begin(), rays.end()};
+  std::vector<Ray> out;
+  out.reserve(count);
+  // The middle of each of `count` equal runs.
+  for (std::uint64_t i = 0; i < count; ++i) out.push_back(rays[(2 * i + 1) * rays.size() / (2 * count)]);
+  return out;
+}
+
+std::vector<Ray> segments_of(const Bvh& bvh, std::span<const Triangle> triangles, std::span<const Ray> rays,
+                             Query query) {
+  std::vector<Ray> out;
+  out.reserve(rays.size());
+  const ReferenceTrace trace =
+      query == Query::kClosest ? trace_reference(bvh, triangles, rays, false) : ReferenceTrace{};
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Ray ray = rays[i];
+    if (gn_ray_is_valid(&ray) == 0) continue;
+    if (query == Query::kClosest && trace.hits[i].primitive != GN_NONE) ray.tmax = trace.hits[i].t;
+    ray.tmin = gn_finite_tmin(ray.tmin);
+    ray.tmax = gn_finite_tmax(ray.tmax);
+    out.push_back(ray);
+  }
+  return out;
+}
+
+namespace {
+
+GnRayCounters count_every(const Bvh& bvh, Ray ray) {
+  GnRayCounters counters{0, 0};
+  if (bvh.nodes.empty() || gn_ray_is_valid(&ray) == 0) return counters;
+  const GnRayFrame frame = gn_ray_frame(&ray);
+  const float limit = gn_slab_limit(gn_finite_tmax(ray.tmax));
+  std::vector<std::uint32_t> waiting{0};
+  while (!waiting.empty()) {
+    const Node& node = bvh.nodes[waiting.back()];
+    waiting.pop_back();
+    counters.boxes += 1;
+    if (!(gn_box_entry(&frame, node.lo, node.hi, gn_finite_tmin(ray.tmin), limit) < GN_INFINITY)) continue;
+    counters.triangles += node.count;
+    if (node.count > 0) continue;
+    waiting.push_back(node.first);
+    waiting.push_back(node.first + 1);
+  }
+  return counters;
+}
+
+}  // namespace
+
+std::vector<double> ray_costs(const OrderedTree& tree, std::span<const Triangle> triangles,
+                              std::span<const Ray> rays, Query query) {
+  std::vector<GnRayCounters> counters;
+  if (query == Query::kEvery) {
+    for (const Ray& ray : rays) counters.push_back(count_every(tree.bvh, ray));
+  } else {
+    counters = trace_reference(tree.bvh, triangles, rays, query == Query::kAny, tree.ranks).counters;
+  }
+  std::vector<double> out;
+  out.reserve(rays.size());
+  for (const GnRayCounters& count : counters)
+    out.push_back(count.boxes == 0 ? 0.0 : kBoxCost * (count.boxes - 1.0) + kTriangleCost * count.triangles);
+  return out;
+}
+
+std::array<float, 3> mixed_weights(std::span<const Ray> rays, float share) {
+  if (!(share >= 0.0F && share <= 1.0F)) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "the share of the rays' own measure in a mixture is " + std::to_string(share) +
+                    "; it must lie in [0, 1]");
+  }
+  std::array<double, 3> mean{};
+  for (Ray ray : rays) {
+    if (gn_ray_is_valid(&ray) == 0) continue;
+    double square = 0.0;
+    for (const float d : ray.direction) square += double{d} * double{d};
+    for (std::size_t k = 0; k < 3; ++k) mean[k] += std::fabs(double{ray.direction[k]}) / std::sqrt(square);
+  }
+  const double sum = mean[0] + mean[1] + mean[2];
+  if (sum == 0.0) return {1.0F, 1.0F, 1.0F};
+  std::array<float, 3> out{};
+  for (std::size_t k = 0; k < 3; ++k)
+    out[k] = static_cast<float>(double{share} * 3.0 * mean[k] / sum + (1.0 - double{share}));
+  return out;
+}
+
+}  // namespace gnomon

@@ -1,0 +1,51 @@
+// A few rays that stand for many: what trees are fitted to and judged by. Not for making rays (gnomon/scene/ray_set.h,
+// gnomon/areas/area_rays.h). Feeds this room.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gnomon/shared/layout.h"
+#include "gnomon/tree/bvh.h"
+#include "gnomon/tree/trace_reference.h"
+
+namespace gnomon {
+
+// What is asked of a ray.
+enum class Query : std::uint32_t {
+  kClosest,  // the nearest hit: boxes behind it are pruned
+  kAny,      // whether there is one: shadow rays
+  kEvery,    // every box within the range is looked at: rays that nothing stops
+};
+[[nodiscard]] const char* to_string(Query query);
+
+// `count` of the rays, evenly spread over them in their order; all where there are no more.
+[[nodiscard]] std::vector<Ray> thinned(std::span<const Ray> rays, std::uint64_t count);
+
+// Each ray as far as its query looks: closest ones end at their hit in `bvh`, others keep their range.
+// Rays that are not traceable are left out.
+[[nodiscard]] std::vector<Ray> segments_of(const Bvh& bvh, std::span<const Triangle> triangles,
+                                           std::span<const Ray> rays, Query query);
+
+inline constexpr double kBoxCost = 1.0;
+inline constexpr double kTriangleCost = 1.2;
+
+// A tree, and for any hit the ranks of its nodes (child_order.h); none: the nearer child goes first.
+struct OrderedTree {
+  Bvh bvh;
+  std::vector<float> ranks;
+};
+
+// What each ray costs in the tree: kBoxCost a box tested, the root's not counted, kTriangleCost a triangle. (Thesis program: NODE_COST,
+// LEAF_COST.) kEvery tests no triangle for a hit, but counts it. Rays that are not traceable cost nothing.
+[[nodiscard]] std::vector<double> ray_costs(const OrderedTree& tree, std::span<const Triangle> triangles,
+                                            std::span<const Ray> rays, Query query);
+
+// Face weights that measure boxes as these rays see them, mixed with surface area: share E|d_k| of unit
+// directions, over that of a cube, and 1 - share of the same weight for all faces. No rays: surface area. share in [0, 1];
+// throws Error{kInvalidArgument} otherwise.
+[[nodiscard]] std::array<float, 3> mixed_weights(std::span<const Ray> rays, float share);
+
+}  // namespace gnomon

@@ -1,0 +1,120 @@
+#include "gnomon/tree/merge_leaves.h"
+
+#include <string>
+
+#include "gnomon/base/error.h"
+#include "gnomon/shared/measure_math.h"
+
+namespace gnomon {
+
+namespace {
+
+void require(bool ok, const char* option, const std::string& value, const char* range) {
+  if (ok) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              std::string("merge option ") + option + " = " + value + " is outside its range " + range);
+}
+
+class Merger {
+ public:
+  Merger(const Bvh& bvh, std::span<const float> measures, const MergeOptions& options)
+      : bvh_(bvh), below_(bvh.nodes.size()) {
+    weigh(measures, options);
+  }
+
+  Bvh run() {
+    out_.primitives = bvh_.primitives;
+    out_.nodes.resize(2 * std::size_t{below_[0].inner} + 1);
+    write(0, 0, 0);
+    return std::move(out_);
+  }
+
+ private:
+  struct Below {
+    float cost = 0.0F;
+    std::uint32_t first = 0;      // in leaf order
+    std::uint32_t triangles = 0;
+    std::uint32_t inner = 0;      // inner nodes that stay
+  };
+
+  // Children before parents.
+  void weigh(std::span<const float> measures, const MergeOptions& options) {
+    std::vector<std::uint32_t> order{0};
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Node& node = bvh_.nodes[order[i]];
+      if (node.count > 0) continue;
+      order.push_back(node.first);
+      order.push_back(node.first + 1);
+    }
+    for (auto index = order.rbegin(); index != order.rend(); ++index) {
+      const Node& node = bvh_.nodes[*index];
+      Below& below = below_[*index];
+      const auto leaf_cost = [&](std::uint32_t triangles) {
+        return measures[*index] * (options.cost_triangle * static_cast<float>(triangles));
+      };
+      if (node.count > 0) {
+        below = {leaf_cost(node.count), node.first, node.count, 0};
+        continue;
+      }
+      const Below& left = below_[node.first];
+      const Below& right = below_[node.first + 1];
+      below = {measures[*index] * options.cost_inner + left.cost + right.cost, left.first,
+               left.triangles + right.triangles, left.inner + right.inner + 1};
+      const float as_leaf = leaf_cost(below.triangles);
+      if (below.triangles <= options.max_leaf_size && as_leaf <= below.cost) {
+        below.cost = as_leaf;
+        below.inner = 0;
+      }
+    }
+  }
+
+  // splits: inner nodes to the left of the subtree. As deep as the tree.
+  void write(std::uint32_t index, std::uint32_t number, std::uint32_t splits) {
+    Node node = bvh_.nodes[index];
+    if (below_[index].inner == 0) {
+      node.first = below_[index].first;
+      node.count = below_[index].triangles;
+      out_.nodes[number] = node;
+      return;
+    }
+    const std::uint32_t left = node.first;
+    const std::uint32_t own = splits + below_[left].inner;
+    node.first = 1 + 2 * own;
+    out_.nodes[number] = node;
+    write(left, node.first, splits);
+    write(left + 1, node.first + 1, own + 1);
+  }
+
+  const Bvh& bvh_;
+  std::vector<Below> below_;
+  Bvh out_;
+};
+
+}  // namespace
+
+void MergeOptions::check() const {
+  require(max_leaf_size >= 1 && max_leaf_size <= 255, "max_leaf_size", std::to_string(max_leaf_size), "1..255");
+  require(cost_inner > 0.0F && cost_inner <= 1000.0F, "cost_inner", std::to_string(cost_inner), "(0, 1000]");
+  require(cost_triangle > 0.0F && cost_triangle <= 1000.0F, "cost_triangle", std::to_string(cost_triangle),
+          "(0, 1000]");
+}
+
+std::vector<float> face_measures(const Bvh& bvh, const std::array<float, 3>& face_weights) {
+  std::vector<float> out;
+  out.reserve(bvh.nodes.size());
+  for (const Node& node : bvh.nodes) out.push_back(gn_linear_measure(face_weights.data(), node.lo, node.hi));
+  return out;
+}
+
+Bvh merge_leaves(const Bvh& bvh, std::span<const float> measures, const MergeOptions& options) {
+  options.check();
+  if (measures.size() != bvh.nodes.size()) {
+    throw Error(ErrorCode::kInvalidArgument, std::to_string(measures.size()) + " measures for " +
+                                                 std::to_string(bvh.nodes.size()) +
+                                                 " nodes; merge_leaves takes one a node");
+  }
+  if (bvh.nodes.empty()) return bvh;
+  return Merger(bvh, measures, options).run();
+}
+
+}  // namespace gnomon

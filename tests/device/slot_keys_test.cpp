@@ -1,0 +1,55 @@
+// Wide trees whose slots have keys, on the device: the reference's bytes, and the answers of any other order.
+#include <catch2/catch.hpp>
+
+#include "gnomon/base/error.h"
+#include "support/flavours.h"
+
+using gnomon::test::context;
+
+TEST_CASE("with keys the device's wide trees are the reference's too, and answer the same",
+          "[portable][unlimited]") {
+  for (const auto& shape : gnomon::test::wide_shapes()) {
+    const auto tree = gnomon::build_device(context(), shape.triangles, shape.options);
+    const auto bvh = download_bvh(context(), tree);
+    std::vector<float> keys(bvh.nodes.size());
+    gnomon::test::Random random(190);
+    for (float& key : keys) key = random.between(0.0F, 1.0F);
+    if (shape.triangles.empty()) keys.clear();
+    const auto expected = gnomon::collapse_reference(bvh, shape.triangles, {}, keys);
+    for (const std::uint32_t task : {0U, 5U}) {
+      CAPTURE(shape.name, task);
+      gnomon::CollapseOptions options;
+      options.triangles_per_task = task;
+      const auto wide = download_wide(context(), collapse_device(context(), tree, options, nullptr, keys));
+      REQUIRE(tree_hash(wide) == tree_hash(expected));
+      if (const auto fault = gnomon::check_wide(wide, shape.triangles, gnomon::Repeats::kNone,
+                                                gnomon::SlotOrder::kByKeys))
+        FAIL(fault->what);
+    }
+  }
+  const auto triangles = gnomon::test::soup(500, 191, 1.0F);
+  const auto rays = gnomon::test::random_rays(500, 192);
+  const auto tree = gnomon::build_device(context(), triangles);
+  std::vector<float> keys(tree.node_count);
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = static_cast<float>(i % 7);
+  const auto keyed = collapse_device(context(), tree, {}, nullptr, keys);
+  const auto plain = collapse_device(context(), tree);
+  REQUIRE(tree_hash(download_wide(context(), keyed)) != tree_hash(download_wide(context(), plain)));
+  for (const auto flavour : {gnomon::TraceFlavour::kWide, gnomon::TraceFlavour::kPacket}) {
+    gnomon::TraceOptions how;
+    how.flavour = flavour;
+    const gnomon::Tracer with(context(), keyed, how);
+    const gnomon::Tracer without(context(), plain, how);
+    CAPTURE(to_string(flavour));
+    REQUIRE(with.any(rays).occluded == without.any(rays).occluded);
+    const auto got = with.closest(rays).hits;
+    const auto hits = without.closest(rays).hits;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      CAPTURE(i);
+      REQUIRE(got[i].primitive == hits[i].primitive);
+      REQUIRE(got[i].t == hits[i].t);
+    }
+  }
+  REQUIRE_THROWS_WITH(collapse_device(context(), tree, {}, nullptr, std::span(keys).first(2)),
+                      Catch::Contains("2 slot keys"));
+}

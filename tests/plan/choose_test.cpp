@@ -1,0 +1,172 @@
+// Plans: never dearer than the best surface-area tree on other rays, nothing where it cannot pay, and they say why.
+#include "gnomon/plan/choose.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "gnomon/base/error.h"
+#include "gnomon/scene/generators.h"
+#include "gnomon/scene/ray_set.h"
+#include "gnomon/tree/build_reference.h"
+#include "gnomon/tree/bvh_check.h"
+
+using gnomon::Plan;
+using gnomon::PlanOptions;
+using gnomon::PlanRays;
+using gnomon::Query;
+using gnomon::Ray;
+using gnomon::Scene;
+
+namespace {
+
+constexpr double kMany = 1e8;
+
+const Scene& cottage() {
+  static const Scene scene = gnomon::generate_scene("cottage", 7000, 1);
+  return scene;
+}
+
+std::vector<Ray> shadow(std::uint64_t count, std::uint64_t seed) {
+  static const gnomon::Bvh bvh = gnomon::build_reference(cottage().triangles);
+  const auto primary = gnomon::primary_rays(cottage(), 2 * count, seed);
+  const auto hits = gnomon::trace_reference(bvh, cottage().triangles, primary, false).hits;
+  return gnomon::shadow_rays(cottage(), primary, hits, count, seed);
+}
+
+std::vector<PlanRays> both_kinds(double expected) {
+  return {{"primary", Query::kClosest, gnomon::primary_rays(cottage(), 512, 1),
+           gnomon::primary_rays(cottage(), 1024, 2), expected},
+          {"shadow", Query::kAny, shadow(512, 1), shadow(1024, 2), expected}};
+}
+
+double mean_cost(const gnomon::OrderedTree& tree, const std::vector<Ray>& rays, Query query) {
+  double sum = 0.0;
+  for (const double cost : gnomon::ray_costs(tree, cottage().triangles, rays, query)) sum += cost;
+  return sum / static_cast<double>(rays.size());
+}
+
+}  // namespace
+
+TEST_CASE("what a plan keeps is cheaper on rays it has not seen, and sound") {
+  const auto rays = both_kinds(kMany);
+  const Plan plan = gnomon::make_plan(cottage().triangles, rays);
+  REQUIRE(plan.decisions.size() == 2);
+  REQUIRE(plan.trees[0].name == "sah");
+  const std::vector<std::vector<Ray>> fresh{gnomon::primary_rays(cottage(), 2000, 3), shadow(2000, 3)};
+  gnomon::BuildOptions options;
+  options.max_leaf_size = 4;
+  for (const gnomon::PlanTree& tree : plan.trees) {
+    CAPTURE(tree.name);
+    if (const auto fault = gnomon::check_bvh(tree.tree.bvh, cottage().triangles, options)) FAIL(fault->what);
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    const gnomon::Decision& decision = plan.decisions[i];
+    CAPTURE(decision.rays, decision.kept, decision.reason);
+    REQUIRE(decision.kept != "sah");
+    REQUIRE(plan.trees[decision.tree].name == decision.kept);
+    const double baseline = mean_cost(plan.trees[0].tree, fresh[i], decision.query);
+    REQUIRE(mean_cost(plan.trees[decision.tree].tree, fresh[i], decision.query) < 0.97 * baseline);
+    REQUIRE(decision.baseline_cost == Approx(baseline).epsilon(0.1));
+    const auto& kept = *std::find_if(decision.trials.begin(), decision.trials.end(),
+                                     [&](const gnomon::Trial& trial) { return trial.name == decision.kept; });
+    REQUIRE(kept.standing.verdict == gnomon::Verdict::kBetter);
+    REQUIRE(kept.saving > kept.price);
+    REQUIRE(kept.tree == decision.tree);
+  }
+  REQUIRE_FALSE(plan.trees[plan.decisions[1].tree].tree.ranks.empty());
+}
+
+TEST_CASE("where few rays come nothing but the baseline is made") {
+  const Plan plan = gnomon::make_plan(cottage().triangles, both_kinds(100.0));
+  REQUIRE(plan.trees.size() == 1);
+  REQUIRE(plan.planning_units == 0.0);
+  for (const gnomon::Decision& decision : plan.decisions) {
+    REQUIRE(decision.kept == "sah");
+    REQUIRE(decision.trials.empty());
+    REQUIRE_THAT(decision.reason, Catch::Contains("cannot repay"));
+  }
+}
+
+TEST_CASE("a price that savings do not cover keeps the baseline") {
+  PlanOptions options;
+  options.prices.byte = 1e9;
+  const Plan plan = gnomon::make_plan(cottage().triangles, both_kinds(kMany), options);
+  REQUIRE(plan.trees.size() == 1);
+  for (const gnomon::Decision& decision : plan.decisions) {
+    CAPTURE(decision.rays);
+    REQUIRE(decision.kept == "sah");
+    REQUIRE_THAT(decision.reason, Catch::Contains("does not repay"));
+  }
+}
+
+TEST_CASE("rays that nothing can be done for keep the baseline") {
+  // A soup seen from everywhere: surface area is what these rays are.
+  const Scene soup = gnomon::generate_scene("random", 3000, 1);
+  const std::vector<PlanRays> rays{{"random", Query::kEvery, gnomon::random_rays(soup, 512, 1),
+                                    gnomon::random_rays(soup, 1024, 2), kMany}};
+  const Plan plan = gnomon::make_plan(soup.triangles, rays);
+  CAPTURE(to_json(plan));
+  REQUIRE(plan.decisions[0].kept == "sah");
+  REQUIRE_THAT(plan.decisions[0].reason, Catch::Contains("no candidate"));
+}
+
+TEST_CASE("a choice by name is kept without a test") {
+  PlanOptions options;
+  for (const std::string& name : gnomon::candidate_names()) {
+    CAPTURE(name);
+    options.choice = name;
+    const Plan plan = gnomon::make_plan(cottage().triangles, both_kinds(1.0), options);
+    REQUIRE(plan.decisions[0].kept == (name == "sah-order" ? "sah" : name));
+    REQUIRE(plan.decisions[1].kept == name);
+    REQUIRE(plan.trees[plan.decisions[1].tree].tree.ranks.empty() == (name == "sah"));
+    REQUIRE(plan.decisions[1].probes == 0);
+  }
+  options.choice = "best";
+  REQUIRE_THROWS_WITH(gnomon::make_plan(cottage().triangles, both_kinds(1.0), options),
+                      Catch::Contains("best") && Catch::Contains("mix-rays"));
+}
+
+TEST_CASE("plans are the same again, and JSON tells all of them") {
+  const auto rays = both_kinds(kMany);
+  PlanOptions options;
+  options.keep_tried = true;
+  const Plan plan = gnomon::make_plan(cottage().triangles, rays, options);
+  const std::string text = to_json(plan);
+  REQUIRE(to_json(gnomon::make_plan(cottage().triangles, rays, options)) == text);
+  const auto json = nlohmann::json::parse(text);
+  REQUIRE(json["trees"].size() == plan.trees.size());
+  REQUIRE(json["trees"].size() == 1 + 4 + 5);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& decision = json["decisions"][i];
+    REQUIRE(decision["kept"] == plan.decisions[i].kept);
+    REQUIRE(decision["reason"] == plan.decisions[i].reason);
+    REQUIRE(decision["trials"].size() == 4 + i);
+    REQUIRE(decision["trials"][0]["probes"].get<std::uint64_t>() >= 128);
+  }
+}
+
+TEST_CASE("plans without rays or triangles") {
+  const Plan none = gnomon::make_plan(cottage().triangles, {});
+  REQUIRE(none.trees.size() == 1);
+  REQUIRE(none.decisions.empty());
+  const Plan empty = gnomon::make_plan({}, both_kinds(kMany));
+  REQUIRE(empty.trees.size() == 1);
+  REQUIRE(empty.decisions[0].kept == "sah");
+  const std::vector<PlanRays> few{{"few", Query::kClosest, gnomon::primary_rays(cottage(), 512, 1),
+                                   gnomon::primary_rays(cottage(), 20, 2), kMany}};
+  REQUIRE_THAT(gnomon::make_plan(cottage().triangles, few).decisions[0].reason, Catch::Contains("20 probes"));
+}
+
+TEST_CASE("plan options out of range are refused") {
+  PlanOptions options;
+  options.fit_rays = 2000;
+  REQUIRE_THROWS_WITH(options.check(), Catch::Contains("fit_rays"));
+  options = {};
+  options.mixture_share = -1.0F;
+  REQUIRE_THROWS_WITH(options.check(), Catch::Contains("mixture_share"));
+  options = {};
+  options.prices.pass = -1.0;
+  REQUIRE_THROWS_WITH(options.check(), Catch::Contains("prices"));
+  auto rays = both_kinds(-1.0);
+  REQUIRE_THROWS_WITH(gnomon::make_plan(cottage().triangles, rays), Catch::Contains("expected rays of primary"));
+}

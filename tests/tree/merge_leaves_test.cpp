@@ -1,0 +1,127 @@
+// Joining leaves: sound trees, the least cost there is, the same hits.
+#include "gnomon/tree/merge_leaves.h"
+
+#include <catch2/catch.hpp>
+
+#include "gnomon/base/error.h"
+#include "gnomon/tree/build_reference.h"
+#include "gnomon/tree/bvh_check.h"
+#include "gnomon/tree/optimise.h"
+#include "gnomon/tree/trace_reference.h"
+#include "support/bundles.h"
+#include "support/shapes.h"
+
+using gnomon::BuildOptions;
+using gnomon::Bvh;
+using gnomon::merge_leaves;
+using gnomon::MergeOptions;
+
+namespace {
+
+constexpr std::array<float, 3> kSurface{1.0F, 1.0F, 1.0F};
+
+BuildOptions single_leaves() {
+  BuildOptions options;
+  options.max_leaf_size = 1;
+  return options;
+}
+
+double cost_of(const Bvh& bvh, const MergeOptions& options) {
+  const auto measures = gnomon::face_measures(bvh, kSurface);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    const double step =
+        bvh.nodes[i].count > 0 ? double{options.cost_triangle} * bvh.nodes[i].count : double{options.cost_inner};
+    sum += step * double{measures[i]};
+  }
+  return sum;
+}
+
+std::uint32_t triangles_below(const Bvh& bvh, std::uint32_t node) {
+  if (bvh.nodes[node].count > 0) return bvh.nodes[node].count;
+  return triangles_below(bvh, bvh.nodes[node].first) + triangles_below(bvh, bvh.nodes[node].first + 1);
+}
+
+// Of the tree whose inner nodes in `leaves` (a bit a pair) are leaves; infinite where one would be too large.
+double cost_with(const Bvh& bvh, const MergeOptions& options, std::uint32_t node, std::uint32_t leaves) {
+  const gnomon::Node& n = bvh.nodes[node];
+  const double measure = double{gnomon::face_measures(bvh, kSurface)[node]};
+  const bool closed = n.count > 0 || (leaves >> (n.first / 2) & 1U) != 0;
+  if (closed) {
+    const std::uint32_t below = triangles_below(bvh, node);
+    if (n.count == 0 && below > options.max_leaf_size) return INFINITY;
+    return measure * double{options.cost_triangle} * below;
+  }
+  return measure * double{options.cost_inner} + cost_with(bvh, options, n.first, leaves) +
+         cost_with(bvh, options, n.first + 1, leaves);
+}
+
+}  // namespace
+
+TEST_CASE("trees with joined leaves are sound, whatever the input") {
+  for (const auto& [name, triangles] : gnomon::test::awkward_inputs()) {
+    for (const std::uint32_t most : {1U, 4U, 255U}) {
+      CAPTURE(name, most);
+      const Bvh before = gnomon::build_reference(triangles, single_leaves());
+      MergeOptions options;
+      options.max_leaf_size = most;
+      const Bvh after = merge_leaves(before, gnomon::face_measures(before, kSurface), options);
+      BuildOptions check = single_leaves();
+      check.max_leaf_size = most;
+      if (const auto fault = gnomon::check_bvh(after, triangles, check)) FAIL(fault->what);
+      REQUIRE(after.primitives == before.primitives);
+      REQUIRE(cost_of(after, options) <= cost_of(before, options) * (1.0 + 1e-6));
+    }
+  }
+}
+
+TEST_CASE("no way to join the leaves of a small tree costs less") {
+  std::uint32_t joined = 0;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    const auto triangles = gnomon::test::soup(3 + seed % 6, 700 + seed, seed % 2 == 0 ? 0.5F : 4.0F);
+    const Bvh before = gnomon::build_reference(triangles, single_leaves());
+    for (const float triangle : {0.3F, 1.2F, 3.0F}) {
+      CAPTURE(seed, triangle);
+      MergeOptions options;
+      options.cost_triangle = triangle;
+      double least = INFINITY;
+      for (std::uint32_t leaves = 0; leaves < 1U << (before.nodes.size() / 2 + 1); ++leaves)
+        least = std::min(least, cost_with(before, options, 0, leaves));
+      const Bvh after = merge_leaves(before, gnomon::face_measures(before, kSurface), options);
+      REQUIRE(cost_of(after, options) == Approx(least).epsilon(1e-5));
+      joined += after.nodes.size() < before.nodes.size() ? 1 : 0;
+    }
+  }
+  REQUIRE(joined > 60);
+}
+
+TEST_CASE("joined leaves change no hit") {
+  const auto triangles = gnomon::test::soup(500, 41, 0.7F);
+  const auto rays = gnomon::test::random_rays(500, 42);
+  const Bvh before = gnomon::optimise_reference(gnomon::build_reference(triangles, single_leaves()));
+  const Bvh after = merge_leaves(before, gnomon::face_measures(before, kSurface));
+  REQUIRE(after.nodes.size() < before.nodes.size());
+  const auto expected = gnomon::trace_reference(before, triangles, rays, false).hits;
+  const auto got = gnomon::trace_reference(after, triangles, rays, false).hits;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    CAPTURE(i);
+    REQUIRE(got[i].primitive == expected[i].primitive);
+    REQUIRE(got[i].t == expected[i].t);
+  }
+}
+
+TEST_CASE("joining leaves refuses what it cannot do, naming it") {
+  const Bvh bvh = gnomon::build_reference(gnomon::test::soup(10, 43), single_leaves());
+  const auto measures = gnomon::face_measures(bvh, kSurface);
+  MergeOptions options;
+  options.max_leaf_size = 0;
+  REQUIRE_THROWS_WITH(merge_leaves(bvh, measures, options), Catch::Contains("max_leaf_size"));
+  options = {};
+  options.cost_inner = 0.0F;
+  REQUIRE_THROWS_WITH(merge_leaves(bvh, measures, options), Catch::Contains("cost_inner"));
+  options = {};
+  options.cost_triangle = NAN;
+  REQUIRE_THROWS_WITH(merge_leaves(bvh, measures, options), Catch::Contains("cost_triangle"));
+  REQUIRE_THROWS_WITH(merge_leaves(bvh, std::span(measures).first(3)), Catch::Contains("3 measures"));
+  REQUIRE(merge_leaves({}, {}).nodes.empty());
+}

@@ -78,15 +78,6 @@ std::vector<Ray> make_rays(RayKind kind, const Scene& scene, const Tracer& trace
                                   : shadow_rays(scene, primary, traced.hits, count, seed);
 }
 
-std::vector<Ray> read_ray_file(const std::string& file) {
-  try {
-    return read_rays(file);
-  } catch (const Error& error) {
-    if (error.code() == ErrorCode::kIo) throw Error(ErrorCode::kBadScene, error.what());
-    throw;
-  }
-}
-
 std::vector<std::string> ray_kind_names() {
   std::vector<std::string> names;
   for (const RayKind kind :

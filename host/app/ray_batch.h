@@ -1,4 +1,4 @@
-// Rays of any kind, whatever they need traced first. Feeds `trace` and `validate`.
+// Rays of any kind, whatever they need traced first. Feeds `trace`, `validate` and `plan`.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,6 @@ namespace gnomon::app {
 // `count` rays; bounce and shadow rays start where primary rays hit, so a batch of them can be smaller.
 [[nodiscard]] std::vector<Ray> make_rays(RayKind kind, const Scene& scene, const Tracer& tracer,
                                          std::uint64_t count, std::uint64_t seed, const Progress& progress);
-
-// As read_rays, but a file that cannot be read is a bad ray file. Throws Error{kBadScene}.
-[[nodiscard]] std::vector<Ray> read_ray_file(const std::string& file);
 
 // The kinds' names, and a text for --help that explains them.
 [[nodiscard]] std::vector<std::string> ray_kind_names();

@@ -87,12 +87,16 @@ MaybeFault check_links(const Bvh& bvh, Walk& walk) {
 }
 
 MaybeFault check_primitives(const Bvh& bvh, std::size_t triangles, const BuildOptions& options) {
-  std::vector<char> seen(triangles, 0);
+  std::vector<std::uint8_t> seen(triangles, 0);
   for (const std::uint32_t primitive : bvh.primitives) {
     if (primitive >= seen.size()) return fault("primitives: index " + text(primitive) + " is out of range");
     if (seen[primitive] != 0 && !has_parts(options))
       return fault("primitives: triangle " + text(primitive) + " appears twice");
-    seen[primitive] = 1;
+    // Also what keeps check_cover's work within bounds, whoever made the tree.
+    if (seen[primitive] == GN_MOST_PARTS)
+      return fault("primitives: triangle " + text(primitive) + " appears more than " + text(GN_MOST_PARTS) +
+                   " times");
+    ++seen[primitive];
   }
   const auto lost = std::find(seen.begin(), seen.end(), 0);
   if (lost == seen.end()) return std::nullopt;

@@ -24,9 +24,9 @@ struct BvhFault {
 // max_leaf_size); boxes (no NaN, inside the parent's, exactly the union of what they hold, -0 equal to 0);
 // numbering (the k-th inner node, by the place in leaf order where it splits, has its children at 1 + 2k and
 // 2 + 2k); depth (at most median_depth + ceil(log2 n) + 1).
-// Where options.builder is kBest triangles are in one leaf or more, in each once, up to kPartBudget more than
-// there are; leaves' boxes lie within the union of what they hold, and a triangle's leaves hold all of it
-// between them.
+// Where options.builder is kBest triangles are in one leaf or more, at most GN_MOST_PARTS, in each once, up
+// to kPartBudget more than there are; leaves' boxes lie within the union of what they hold, and a triangle's
+// leaves hold all of it between them.
 [[nodiscard]] std::optional<BvhFault> check_bvh(const Bvh& bvh, std::span<const GnTriangle> triangles,
                                                 const BuildOptions& options);
 

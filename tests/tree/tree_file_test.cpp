@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 
 #include "gnomon/scene/scene.h"
 #include "tree_file_tools.h"
@@ -179,6 +180,20 @@ TEST_CASE("wrong options, flags, reserved bytes and broken trees are refused tho
   CHECK_THAT(with(kHeaderBytes + 12, 0xffffffffU), Contains("links"));
   CHECK_THAT(with(kHeaderBytes + 12, 0), Contains("links"));
   CHECK_THAT(with(whole.size() - 4, 90), Contains("out of range"));
+}
+
+TEST_CASE("a triangle in more leaves than it can have parts is refused before work is spent on it") {
+  BuildOptions options;
+  options.builder = Builder::kBest;
+  const auto triangles = soup(200, 8);
+  Bvh bvh = build_reference(triangles, options);
+  bvh.primitives.resize(200);
+  std::iota(bvh.primitives.begin(), bvh.primitives.end(), 0U);
+  bvh.primitives.insert(bvh.primitives.end(), 32, 7U);
+  CHECK_THROWS_WITH(tree_to_bytes(bvh, options, triangles),
+                    Contains("triangle 7 appears more than 32 times"));
+  bvh.primitives.pop_back();  // now it is the leaves' ranges that do not fit
+  CHECK_THROWS_WITH(tree_to_bytes(bvh, options, triangles), Contains("leaf ranges"));
 }
 
 TEST_CASE("no file is made of a broken tree") {

@@ -136,7 +136,7 @@ class Charts {
 
   void break_evens() {
     RowPlot plot;
-    plot.x_label = "rays per build from which it is done sooner than " + std::string(kBaseline);
+    plot.x_label = "rays per build from which on it is done sooner";
     plot.series = kinds_of(device_);
     for (const Line& own : lines_) {
       if (own.method == kBaseline) continue;

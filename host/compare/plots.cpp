@@ -25,7 +25,7 @@ void x_axis(Svg& svg, const LogAxis& axis, double top, double bottom, const std:
     const double x = axis.at(tick.value);
     svg.line(x, top, x, bottom, "grid");
     // Labels that would run into each other are left out.
-    if (x - last < 7.0 * static_cast<double>(tick.text.size()) + 8.0) continue;
+    if (x - last < 7.6 * static_cast<double>(tick.text.size()) + 8.0) continue;
     svg.text(x, bottom + 16.0, tick.text, Anchor::kMiddle, "soft");
     last = x;
   }

@@ -116,7 +116,8 @@ class Run {
       if (!wanted(options_, name) || (is_done("builds") && !has_row(name))) continue;
       tell("first build of " + name, share);
       const double begun = spent();
-      if (begun + slowest_ > kFirstBuildShare * options_.seconds && name != kBaseline && !is_done("builds")) {
+      const double expected = entered_.empty() ? 0.0 : entering_ / static_cast<double>(entered_.size());
+      if (begun + expected > kFirstBuildShare * options_.seconds && name != kBaseline && !is_done("builds")) {
         leave_out(name, "build", "no time" + budget());
         continue;
       }
@@ -125,7 +126,7 @@ class Run {
         entered.entrant->build(stage_of("first build of " + name, share));
         if (name == kBaseline) baseline_ = entered.entrant.get();
         examine(entered);
-        slowest_ = std::max(slowest_, spent() - begun);
+        entering_ += spent() - begun;
         entered_.push_back(std::move(entered));
       } catch (const Error& error) {
         if (name == kBaseline || error.code() == ErrorCode::kCancelled) throw;
@@ -323,7 +324,7 @@ class Run {
   const std::function<void()>& after_step_;
   const Progress& progress_;
   double start_;
-  double slowest_ = 0.0;  // first build so far
+  double entering_ = 0.0;  // seconds of all first builds so far
   std::vector<Entered> entered_;
   Entrant* baseline_ = nullptr;
   std::map<std::string, std::vector<Ray>> samples_;  // a few of each kind, to hold predictions against

@@ -14,14 +14,14 @@ const char* const kStyle = R"(
 .chart{font:13px system-ui,sans-serif;--ink:#1a1a1a;--soft:#5c5c5c;--rule:#dcdcdc;--paper:#fff;
 --c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#b0538c;--c4:#b87d00;--c5:#2f8fc4}
 .chart text{fill:var(--ink)}
-.chart .soft{fill:var(--soft);font-size:12px}
+.chart .soft{fill:var(--soft)}
 .chart .head{font-weight:600}
 .chart .grid{stroke:var(--rule);stroke-width:1}
 .chart .even{stroke:var(--soft);stroke-width:1.2;stroke-dasharray:4 3}
 .chart .axis{stroke:var(--soft);stroke-width:1}
 .chart .lead{stroke:var(--soft);stroke-width:.8}
 .chart .front{fill:none;stroke:var(--soft);stroke-width:1.5}
-.chart .letter{font-size:11px;font-weight:600;fill:var(--paper)}
+.chart .letter{font-size:12px;font-weight:600;fill:var(--paper)}
 .chart .mark{stroke:var(--paper);stroke-width:1}
 .chart .span{stroke-width:2.5;opacity:.45}
 .chart .curve{fill:none;stroke-width:2}

@@ -12,7 +12,8 @@ using program::run;
 
 namespace {
 
-std::vector<std::string> command(const std::string& page, std::vector<std::string> more = {}) {
+std::vector<std::string> command(const std::string& page, const std::vector<std::string>& more = {},
+                                 const std::string& rounds = "3", const std::string& rays = "2k") {
   std::vector<std::string> words{"compare",
                                  "gen:cottage:7k",
                                  "--methods",
@@ -20,11 +21,11 @@ std::vector<std::string> command(const std::string& page, std::vector<std::strin
                                  "--rays",
                                  "primary,shadow,light",
                                  "--ray-count",
-                                 "2k",
+                                 rays,
                                  "--judged-rays",
                                  "300",
                                  "--rounds",
-                                 "3",
+                                 rounds,
                                  "-o",
                                  page};
   words.insert(words.end(), more.begin(), more.end());
@@ -132,7 +133,9 @@ TEST_CASE("Ctrl-C keeps what is finished, and the same command goes on from ther
   setup.terminal = true;
   setup.environment["TERM"] = "xterm";
   setup.interrupt_at = "trace shadow";
-  const auto stopped = run(command(folder.file("r.html")), setup);
+  // Enough rounds that the progress line, which is not drawn at every step, shows the stage.
+  const auto longer = command(folder.file("r.html"), {}, "20", "50k");
+  const auto stopped = run(longer, setup);
   CAPTURE(stopped.err);
   REQUIRE(stopped.status == 130);
   REQUIRE_THAT(stopped.err, Contains("the same command goes on from there"));
@@ -140,10 +143,10 @@ TEST_CASE("Ctrl-C keeps what is finished, and the same command goes on from ther
   REQUIRE(kept.at("complete") == false);
   const auto builds = rows_of(kept, "build");
   REQUIRE_FALSE(builds.empty());
-  REQUIRE(builds.front().at("wall_s").size() == 3);
+  REQUIRE(builds.front().at("wall_s").size() == 20);
   REQUIRE_FALSE(std::filesystem::exists(folder.file("r.html")));
 
-  const auto resumed = run(command(folder.file("r.html")));
+  const auto resumed = run(longer);
   CAPTURE(resumed.err);
   REQUIRE(resumed.status == 0);
   const json whole = read_report(folder);

@@ -98,18 +98,24 @@ __kernel void add_light(__global GnPath* paths, __global const uint* owners, __g
   }
 }
 
-// Adds a batch's paths to their pixels, in the order of samples. film: radiance, and how many paths met a surface.
+// Adds a batch's paths to their pixels, in the order of samples. film: radiance, and how many paths met a surface; what
+// was there before sample 0 does not count.
 __kernel void add_to_film(__global const GnPathFrame* frame, __global const GnPath* paths, __global float4* film,
-                          uint first_cell, uint cells, uint samples) {
+                          uint first_cell, uint cells, uint first_sample, uint samples) {
   const uint i = (uint)get_global_id(0);
   if (i < cells) {
     const uint pixel = gn_pixel_of(frame, first_cell + i);
+    float4 sum = (float4)(0.0f);
     uint s;
     if (pixel == GN_NONE) return;
+    if (first_sample != 0u) sum = film[pixel];
     for (s = 0u; s < samples; ++s) {
-      const GnPath path = paths[s * cells + i];
-      film[pixel] =
-          film[pixel] + (float4)(path.radiance[0], path.radiance[1], path.radiance[2], path.seen != 0u ? 1.0f : 0.0f);
+      __global const GnPath* path = paths + s * cells + i;
+      sum.x = sum.x + path->radiance[0];
+      sum.y = sum.y + path->radiance[1];
+      sum.z = sum.z + path->radiance[2];
+      sum.w = sum.w + (path->seen != 0u ? 1.0f : 0.0f);
     }
+    film[pixel] = sum;
   }
 }

@@ -11,7 +11,8 @@ namespace gnomon {
 // How light that a surface could get from an area light or the sky is found. All three have the same mean;
 // points and suns are always asked, since no scattered ray meets them.
 enum class PathStrategy : std::uint32_t {
-  kBoth,      // multiple importance sampling: each finding weighed against the other's chance of it
+  kBoth,      // multiple importance sampling: each finding weighed against the other's chance of it; the sky
+              // is left to scattering
   kLights,    // by rays drawn towards lights
   kSurfaces,  // by rays that the surface scatters
 };

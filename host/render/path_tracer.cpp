@@ -90,7 +90,6 @@ class PathTracer::Work {
         room_(context, at_once_),
         film_(context.create_buffer("film", pixels() * sizeof(std::array<float, 4>))) {
     refuse_many_lights(context.device(), scene_.lights.size());
-    context.fill(film_, 0);
     scan_.digit_bits = 8;
     for (auto [kernel, name] : {std::pair{&begin_, "begin_paths"},
                                 {&step_, "step_paths"},
@@ -124,6 +123,7 @@ class PathTracer::Work {
 
   [[nodiscard]] std::size_t pixels() const { return std::size_t{options_.width} * options_.height; }
   [[nodiscard]] std::vector<std::array<float, 4>> film() const {
+    if (samples_ == 0) return std::vector<std::array<float, 4>>(pixels());
     return context_.download_values<std::array<float, 4>>(film_, pixels());
   }
 
@@ -182,7 +182,7 @@ class PathTracer::Work {
       count = pack(count, room_.rays, room_.owners, room_.next_rays, room_.next_owners);
     }
     launch(add_to_film_, batch.cells, tables_.frame, room_.paths, film_, batch.first_cell, batch.cells,
-           batch.samples);
+           batch.first_sample, batch.samples);
     collect_times();
   }
 

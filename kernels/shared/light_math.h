@@ -50,13 +50,14 @@ GN_INLINE int gn_way_to(const gn_f32* from, const gn_f32* to, gn_f32* direction,
 }
 
 // About what a light would bring a place if nothing were in between: exactly so for points and suns, and never 0 where
-// an area light or the sky brings something. What choosing between lights goes by.
-GN_INLINE gn_f32 gn_importance(const GnPathLight* light, const GnPlace* place, gn_u32 strategy) {
+// an area light brings something.
+GN_INLINE gn_f32 gn_open_light(const GnPathLight* light, const GnPlace* place, gn_u32 strategy) {
   gn_f32 direction[3], square, facing;
   int k;
   if (light->kind == GN_LIGHT_SUN) return gn_max(0.0f, -gn_dot(light->direction, place->normal)) * light->strength;
-  if (light->kind >= GN_LIGHT_AREA && strategy == GN_STRATEGY_SURFACES) return 0.0f;
-  if (light->kind == GN_LIGHT_SKY) return light->strength;
+  // Scattered rays find the sky as well as drawn ones would, so it is drawn only where they do not count.
+  if (light->kind == GN_LIGHT_SKY) return strategy == GN_STRATEGY_LIGHTS ? light->strength : 0.0f;
+  if (light->kind == GN_LIGHT_AREA && strategy == GN_STRATEGY_SURFACES) return 0.0f;
   if (light->kind == GN_LIGHT_POINT) {
     if (!gn_way_to(place->position, light->position, direction, &square)) return 0.0f;
     facing = gn_max(0.0f, gn_dot(direction, place->normal));
@@ -68,6 +69,12 @@ GN_INLINE gn_f32 gn_importance(const GnPathLight* light, const GnPlace* place, g
   // All of it behind the surface.
   if (gn_dot(direction, place->normal) < -1.001f * light->range) return 0.0f;
   return light->strength * gn_reciprocal(gn_max(gn_max(square, light->range * light->range), 1e-30f));
+}
+
+// What choosing between lights goes by: the root of that. The strongest light is hidden in many places, and what others
+// bring there would be noise if they were asked seldom.
+GN_INLINE gn_f32 gn_importance(const GnPathLight* light, const GnPlace* place, gn_u32 strategy) {
+  return gn_root(gn_open_light(light, place, strategy));
 }
 
 // The emitter that holds this much of its light's running area.

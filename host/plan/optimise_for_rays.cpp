@@ -79,6 +79,8 @@ class SampleCosts {
     std::uint32_t beside = node ^ 1U;
     GnMove& move = search.move;
     move = {node, GN_NONE, 0, GN_LEAST_GAIN * search.own, 0, pivot, {0, 0}};
+    // Where no segment comes the areas' passes before this one have had their say.
+    if (!meets_any(node)) return move;
     GnBox shrunk = box_of(slots[beside]);  // of what will be left of the pivot
     Mask shrunk_mask = mask_of(beside);
     float saved = costs_[pivot];
@@ -145,6 +147,13 @@ class SampleCosts {
     return gn_linear_measure(measure_.face_weights.data(), box.lo, box.hi);
   }
 
+  [[nodiscard]] bool meets_any(std::uint32_t slot) const {
+    for (std::size_t w = 0; w < words_; ++w) {
+      if (masks_[slot * words_ + w] != 0) return true;
+    }
+    return false;
+  }
+
   [[nodiscard]] Mask mask_of(std::uint32_t slot) const {
     Mask mask{};
     for (std::size_t w = 0; w < words_; ++w) mask[w] = masks_[slot * words_ + w];
@@ -157,10 +166,13 @@ class SampleCosts {
     for (std::size_t w = 0; w < words_; ++w) masks_[slot * words_ + w] = mask[w];
   }
 
-  // known: segments that surely meet the box; becomes all that do. within: those that may.
-  float cost_within(const GnBox& box, const Mask& within, Mask& known) {
+  // known: segments that surely meet the box; becomes all that do. within: those that may. Once it is clear that the box
+  // costs `enough` or more the rest is not tested, and something from there up is returned.
+  float cost_within(const GnBox& box, const Mask& within, Mask& known, float enough = GN_INFINITY) {
     std::uint32_t met = 0;
+    const float areas = linear(box);
     for (std::size_t w = 0; w < words_; ++w) {
+      if (cost(met, areas) >= enough) break;
       std::uint64_t open = within[w] & ~known[w];
       while (open != 0) {
         const auto bit = static_cast<std::size_t>(std::countr_zero(open));
@@ -173,16 +185,17 @@ class SampleCosts {
       }
       met += static_cast<std::uint32_t>(std::popcount(known[w]));
     }
-    return cost(met, linear(box));
+    return cost(met, areas);
   }
 
   [[nodiscard]] float cost(std::uint32_t met, float linear_measure) const {
     return static_cast<float>(met) * per_segment_ + linear_measure * per_measure_;
   }
 
-  float joint_cost(const Search& search, std::uint32_t slot, const Mask& within, Mask& joint) {
+  float joint_cost(const Search& search, std::uint32_t slot, const Mask& within, Mask& joint,
+                   float enough = GN_INFINITY) {
     for (std::size_t w = 0; w < words_; ++w) joint[w] = search.mask[w] | masks_[slot * words_ + w];
-    return cost_within(around(search.box, box_of(search.slots[slot])), within, joint);
+    return cost_within(around(search.box, box_of(search.slots[slot])), within, joint, enough);
   }
 
   // What joining costs at least: without a test.
@@ -207,7 +220,9 @@ class SampleCosts {
         const float hope = next.saved - least_joint_cost(search, slot);
         below[side].saved = -GN_INFINITY;
         if (!(hope > move.gain) && !(inner && hope + costs_[slot] - search.own > move.gain)) continue;
-        const float gain = next.saved - joint_cost(search, slot, next.joint, below[side].joint);
+        const float reach = inner ? gn_max(0.0F, costs_[slot] - search.own) : 0.0F;  // what may be saved below it
+        const float enough = next.saved + reach - move.gain;
+        const float gain = next.saved - joint_cost(search, slot, next.joint, below[side].joint, enough);
         if (gain > move.gain) {
           move.gain = gain;
           move.target = slot;

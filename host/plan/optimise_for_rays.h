@@ -33,7 +33,7 @@ struct SampledTree {
 };
 
 // The tree with its inner nodes' weight brought down; options.face_weights are not read. Segments are rays with their
-// ranges (segments_of). Without any it is reinsertion by the prior alone. Deterministic. Throws
+// ranges (segments_of); nodes that none of them meets stay where they are. Deterministic. Throws
 // Error{kInvalidArgument} (options; a tree deeper than 128).
 [[nodiscard]] SampledTree optimise_for_rays(const Bvh& bvh, std::span<const Ray> segments,
                                             const SampleMeasure& measure, const OptimiseOptions& options = {});

@@ -7,9 +7,9 @@
 #include "sweep.h"
 #include "shared/axis_policy.h"
 
-// Which axis policy kernels are compiled for: GN_AXES_ALL leaves the others out.
-#ifndef GN_AXES
-#define GN_AXES GN_AXES_ALL
+// 1: the heuristic's own axis policy orders axes (axis_policy.h). 0: all three are tried, and policies are left out.
+#ifndef GN_ORDERED_AXES
+#define GN_ORDERED_AXES 0
 #endif
 
 // What the published builder bins: barycentres over the node's box, its last plane left out. Ours: middles of boxes over
@@ -216,7 +216,7 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
 static inline GnSplit choose_split(const GnHeuristic* heuristic, int how, const GnNodeView* node,
                                    __local GnBin* bins, __local const uint* counts,
                                    __local GnSplit* best_of_axis) {
-#if GN_AXES == GN_AXES_ALL
+#if !GN_ORDERED_AXES
   return cheapest_split(heuristic, how, node, bins, counts, best_of_axis);
 #else
   turn_bins(bins);

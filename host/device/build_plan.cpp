@@ -63,7 +63,7 @@ void heed_loop_limit(BuildPlan& plan, const cl::DeviceInfo& device, const BuildO
 
 std::string BuildPlan::program_options() const {
   return "-DGN_WGS=" + std::to_string(work_group_size) + " -DGN_BINS=" + std::to_string(bins) +
-         " -DGN_AXES=" + std::to_string(axes) + "u -DGN_PUBLISHED_BINS=" + (published_bins ? "1" : "0") +
+         " -DGN_ORDERED_AXES=" + (ordered_axes ? "1" : "0") + " -DGN_PUBLISHED_BINS=" + (published_bins ? "1" : "0") +
          " -DGN_KIND=" + std::to_string(kind) + "u";
 }
 
@@ -111,7 +111,7 @@ BuildPlan plan_build(const cl::DeviceInfo& device, std::uint64_t count, const Bu
   BuildPlan plan;
   plan.count = static_cast<std::uint32_t>(count);
   plan.bins = options.bins;
-  plan.axes = static_cast<std::uint32_t>(options.axes);
+  plan.ordered_axes = options.axes != AxisPolicy::kAll;
   plan.published_bins = options.published_leaves.on;
   plan.kind = options.measure.kind;
   const auto widest =

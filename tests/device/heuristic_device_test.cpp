@@ -55,7 +55,6 @@ TEST_CASE("axis policies, published and repaired, choose what the reference choo
         options.axes = axes;
         options.policy.repaired = repaired;
         options.published_leaves.on = !repaired;
-        options.bins = repaired ? 16 : 40;
         options.work_group_size = 1;
         same_tree(triangles, options);
       }
@@ -88,6 +87,39 @@ TEST_CASE("the cooperative flavour heeds windows and points", "[unlimited]") {
   for (const std::size_t which : {2U, 4U, 6U, 8U}) require_same_in_groups(which, AxisPolicy::kAll);
 }
 
+// Points on a line have boxes without surface: every split costs nothing and ties at nothing.
+TEST_CASE("of splits that cost nothing the most even one is chosen") {
+  std::vector<GnTriangle> points;
+  for (int i = 0; i < 40; ++i) {
+    const auto x = static_cast<float>(i * i);
+    points.push_back(gnomon::test::triangle({x, 1, 2}, {x, 1, 2}, {x, 1, 2}));
+  }
+  BuildOptions options;
+  options.measure = gnomon::test::every_measure()[1].second;
+  REQUIRE(options.measure.breaks_ties == 1);
+  options.work_group_size = 1;
+  same_tree(points, options);
+  const Bvh tree = gnomon::build_reference(points, options);
+  REQUIRE(tree.nodes[0].count == 0);
+  // Bins of 95.06 wide: 20 points are before 380 = 4 of them, and no plane halves better.
+  const auto left_of = [&](std::uint32_t node) {
+    std::uint32_t count = 0;
+    std::vector<std::uint32_t> stack{node};
+    while (!stack.empty()) {
+      const GnNode& at = tree.nodes[stack.back()];
+      stack.pop_back();
+      if (at.count > 0) {
+        count += at.count;
+      } else {
+        stack.push_back(at.first);
+        stack.push_back(at.first + 1);
+      }
+    }
+    return count;
+  };
+  REQUIRE(left_of(tree.nodes[0].first) == 20);
+}
+
 TEST_CASE("a device that ends long loops refuses measures that need them") {
   gnomon::cl::DeviceInfo limited = context().device();
   limited.loop_limit = 65535;
@@ -118,4 +150,8 @@ TEST_CASE("the published leaf rule ends where it says", "[unlimited]") {
   REQUIRE(with([](auto& leaves) { leaves.max_cost = 0.05F; }) != plain);
   REQUIRE(with([](auto& leaves) { leaves.max_probability = 0.02F; }) != plain);
   REQUIRE(with([](auto& leaves) { leaves.max_area = 10.0F; }) != plain);
+  // The children's probabilities reach them where all three axes are tried, too.
+  options.axes = AxisPolicy::kAll;
+  const std::string all_axes = same_tree(triangles, options);
+  REQUIRE(with([](auto& leaves) { leaves.max_probability = 0.02F; }) != all_axes);
 }

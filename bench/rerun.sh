@@ -22,6 +22,11 @@ take_exit_rule() {
 take_failure_map() { "$build/bench/failure_map_bench"; }
 take_heuristic() { "$build/bench/heuristic_bench"; }
 take_heuristic_seam() { "$build/bench/spine_bench" atrium 200000; }
+take_ray_aware() {
+  "$build/bench/ray_aware_bench" thesis --configs "${THESIS_CONFIGS:?the set-ups, a JSON file}" \
+    --scenes "${THESIS_SCENES:?a folder}"
+  "$build/bench/ray_aware_bench" generated
+}
 take_reproduce() {
   gnomon reproduce --configs "${THESIS_CONFIGS:?the set-ups, a JSON file}" --scenes "${THESIS_SCENES:?a folder}" \
     --published "${THESIS_PUBLISHED:?the published results, a CSV file}" --rows /dev/fd/3 3>&1 >/dev/null

@@ -142,6 +142,7 @@ TEST_CASE("a build that is interrupted, or cannot write, leaves no file") {
   stopped.interrupt_at = "%";
   const auto outcome =
       run({"build", "gen:city:300k", "--repeat", "20", "-o", folder.file("tree.gnb")}, stopped);
+  CAPTURE(outcome.err);
   CHECK(outcome.status == 130);
   CHECK(folder.names().empty());
   const auto nowhere = run({"build", kScene, "--repeat", "1", "-o", folder.file("none/tree.gnb")});

@@ -4,10 +4,7 @@
 //   failure_map_page ROWS.jsonl PAGE.md [--check]
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -16,23 +13,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "page_file.h"
+
 namespace {
 
 using nlohmann::json;
+using page::number;
 
 constexpr double kLoss = 1.02;  // more of the work of SAH's tree than this is set in bold
-
-std::string read(const char* path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(std::string("cannot read ") + path);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::string number(double value, const char* format) {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 std::string percent(double share) {
   return number(100.0 * share, std::fabs(share) < 0.0995 ? "%.1f %%" : "%.0f %%");
@@ -243,22 +231,5 @@ class Page {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::fprintf(stderr, "usage: failure_map_page ROWS.jsonl PAGE.md [--check]\n");
-    return 2;
-  }
-  try {
-    const std::string page = Page(read(argv[1])).text();
-    if (argc > 3 && std::string(argv[3]) == "--check") {
-      const bool same = read(argv[2]) == page;
-      if (!same)
-        std::fprintf(stderr, "%s is not what its rows give: run failure_map_page without --check\n", argv[2]);
-      return same ? 0 : 1;
-    }
-    std::ofstream(argv[2], std::ios::binary) << page;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "failure_map_page: %s\n", error.what());
-    return 1;
-  }
-  return 0;
+  return page::run(argc, argv, "failure_map_page", [](const std::string& rows) { return Page(rows).text(); });
 }

@@ -4,9 +4,6 @@
 //   ray_aware_page ROWS.jsonl PAGE.md [--check]
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -15,23 +12,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "page_file.h"
+
 namespace {
 
 using nlohmann::json;
+using page::number;
 
 constexpr double kEven = 0.005;  // ratios this near 1 are neither a win nor a loss
-
-std::string read(const char* path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(std::string("cannot read ") + path);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::string number(double value, const char* format) {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 // The trees of one set-up's rays, by name.
 struct Case {
@@ -173,23 +161,5 @@ class Page {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::fprintf(stderr, "usage: ray_aware_page ROWS.jsonl PAGE.md [--check]\n");
-    return 2;
-  }
-  try {
-    const std::string text = Page(read(argv[1])).text();
-    if (argc > 3 && std::string(argv[3]) == "--check") {
-      if (read(argv[2]) == text) return 0;
-      std::fprintf(stderr, "%s is not what %s gives; run ray_aware_page %s %s\n", argv[2], argv[1], argv[1], argv[2]);
-      return 1;
-    }
-    std::ofstream out(argv[2], std::ios::binary);
-    out << text;
-    if (!out.flush()) throw std::runtime_error(std::string("cannot write ") + argv[2]);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
-  return 0;
+  return page::run(argc, argv, "ray_aware_page", [](const std::string& rows) { return Page(rows).text(); });
 }

@@ -7,6 +7,7 @@
 #include "gnomon/base/error.h"
 #include "gnomon/shared/hit_math.h"
 #include "gnomon/shared/measure_math.h"
+#include "gnomon/tree/parents_first.h"
 
 namespace gnomon {
 
@@ -84,13 +85,7 @@ class Learner {
   // From areas alone, children before parents: rays meet a box as its measure says, are stopped the more the more
   // triangles show, and look at all that they meet.
   void expect() {
-    std::vector<std::uint32_t> order{0};
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const Node& node = bvh_.nodes[order[i]];
-      if (node.count > 0) continue;
-      order.push_back(node.first);
-      order.push_back(node.first + 1);
-    }
+    const std::vector<std::uint32_t> order = parents_first(bvh_);
     std::vector<float> shown(bvh_.nodes.size());
     std::vector<float> work(bvh_.nodes.size());
     for (auto at = order.rbegin(); at != order.rend(); ++at) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "gnomon/base/error.h"
+#include "gnomon/tree/parents_first.h"
 #include "gnomon/shared/measure_math.h"
 
 namespace gnomon {
@@ -39,13 +40,7 @@ class Merger {
 
   // Children before parents.
   void weigh(std::span<const float> measures, const MergeOptions& options) {
-    std::vector<std::uint32_t> order{0};
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const Node& node = bvh_.nodes[order[i]];
-      if (node.count > 0) continue;
-      order.push_back(node.first);
-      order.push_back(node.first + 1);
-    }
+    const std::vector<std::uint32_t> order = parents_first(bvh_);
     for (auto index = order.rbegin(); index != order.rend(); ++index) {
       const Node& node = bvh_.nodes[*index];
       Below& below = below_[*index];

@@ -21,7 +21,8 @@ inline std::string number(double value, const char* format) {
   return text;
 }
 
-// The whole program PROGRAM ROWS.jsonl PAGE.md [--check]: writes what `text_of` makes of the rows' text, or, for
+// The whole program PROGRAM ROWS.jsonl PAGE.md [--check]: writes what `text_of` makes of the rows' text, or,
+// for
 // --check, exits 1 where the page is another.
 template <typename TextOf>
 int run(int argc, char** argv, const char* program, TextOf text_of) {
@@ -33,7 +34,8 @@ int run(int argc, char** argv, const char* program, TextOf text_of) {
     const std::string text = text_of(read(argv[1]));
     if (argc > 3 && std::string(argv[3]) == "--check") {
       if (read(argv[2]) == text) return 0;
-      std::fprintf(stderr, "%s is not what %s gives; run %s %s %s\n", argv[2], argv[1], program, argv[1], argv[2]);
+      std::fprintf(stderr, "%s is not what %s gives; run %s %s %s\n", argv[2], argv[1], program, argv[1],
+                   argv[2]);
       return 1;
     }
     std::ofstream out(argv[2], std::ios::binary);

@@ -1,5 +1,5 @@
-// Writes the page of trees for given rays from the rows of ray_aware_bench, and from nothing else; or checks that the page
-// is what the rows give.
+// Writes the page of trees for given rays from the rows of ray_aware_bench, and from nothing else; or checks
+// that the page is what the rows give.
 //
 //   ray_aware_page ROWS.jsonl PAGE.md [--check]
 #include <algorithm>
@@ -59,8 +59,9 @@ class Page {
       const std::string query = row.at("query");
       const std::string rays = row.at("rays");
       // Any-hit cases are told apart by their rays.
-      const std::string kind = query == "any" ? (rays == "lit" ? "unoccluded shadow rays" : "shadow rays, any hit")
-                                              : name_of(query);
+      const std::string kind = query == "any"
+                                   ? (rays == "lit" ? "unoccluded shadow rays" : "shadow rays, any hit")
+                                   : name_of(query);
       const std::string key = row.at("set_up").get<std::string>() + "/" + rays + "/" + query;
       Case& found = groups_[row.at("family").get<std::string>() + ": " + kind][key];
       found.set_up = row.at("set_up");
@@ -73,14 +74,17 @@ class Page {
   }
 
   [[nodiscard]] std::string text() const {
-    std::string out =
-        "# Trees for given rays\n\nWritten by `ray_aware_page` from `ray_aware.jsonl` (" + std::to_string(rows_) +
-        " rows of `ray_aware_bench`, commit " + commit_.substr(0, 12) +
-        ").\n\nCost of a ray: 1.0 a box test and 1.2 a triangle test, two boxes a node visited, the root's not counted. "
-        "Trees are fitted to\nrays of one seed, chosen by those of another, measured on a third's. Cells: geometric mean "
-        "of the cost over the baseline's (wins/losses\nbeyond 0.5 %, worst). Baseline: three axes, surface area, "
-        "reinsertion by surface area, near child first. Hits that differ from the\nbaseline's, all rows together: " +
-        std::to_string(different_) + ".\n";
+    std::string out = "# Trees for given rays\n\nWritten by `ray_aware_page` from `ray_aware.jsonl` (" +
+                      std::to_string(rows_) + " rows of `ray_aware_bench`, commit " + commit_.substr(0, 12) +
+                      ").\n\nCost of a ray: 1.0 a box test and 1.2 a triangle test, two boxes a node "
+                      "visited, the root's not counted. "
+                      "Trees are fitted to\nrays of one seed, chosen by those of another, measured on a "
+                      "third's. Cells: geometric mean "
+                      "of the cost over the baseline's (wins/losses\nbeyond 0.5 %, worst). Baseline: three "
+                      "axes, surface area, "
+                      "reinsertion by surface area, near child first. Hits that differ from the\nbaseline's, "
+                      "all rows together: " +
+                      std::to_string(different_) + ".\n";
     for (const auto& [name, cases] : groups_) out += table(name, cases);
     return out + nothing_helps();
   }
@@ -97,14 +101,18 @@ class Page {
 
   static std::string table(const std::string& name, const Cases& cases) {
     const bool any = !ratios(cases, "sah-order", "sah").empty();
-    std::string out = "\n## " + name + ", " + std::to_string(cases.size()) + " cases\n\n| tree | of the baseline |" +
-                      (any ? std::string(" near child first | of the baseline in its own learnt order |\n|---|---|---|---|\n")
-                           : std::string("\n|---|---|\n"));
+    std::string out =
+        "\n## " + name + ", " + std::to_string(cases.size()) + " cases\n\n| tree | of the baseline |" +
+        (any ? std::string(
+                   " near child first | of the baseline in its own learnt order |\n|---|---|---|---|\n")
+             : std::string("\n|---|---|\n"));
     for (const char* const tree : {"sah-order", "sah-mix", "sah-rays", "mix", "mix-rays", "auto"}) {
       const std::vector<double> own = ratios(cases, tree, "sah");
       if (own.empty()) continue;
       out += std::string("| ") + tree + " |" + cell(own);
-      if (any) out += cell(ratios(cases, std::string(tree) + " near", "sah")) + cell(ratios(cases, tree, "sah-order"));
+      if (any)
+        out +=
+            cell(ratios(cases, std::string(tree) + " near", "sah")) + cell(ratios(cases, tree, "sah-order"));
       out += "\n";
     }
     return out + summary(cases);
@@ -129,22 +137,25 @@ class Page {
       worst = c.set_up + ", " + c.rays;
     }
     std::string out = "\nKept:";
-    for (const auto& [name, count] : kept) out.append(" ").append(name).append(" ").append(std::to_string(count)).append(",");
+    for (const auto& [name, count] : kept)
+      out.append(" ").append(name).append(" ").append(std::to_string(count)).append(",");
     out.back() = '.';
-    return out + " Regret of the choice against the best of the pool: " + number(geomean(regret), "%.4f") + ", at most " +
-           number(most, "%.3f") + " (" + worst + "). Planning took " + number(geomean(planning), "%.1f") +
-           " times the baseline's build, in counts.\n";
+    return out + " Regret of the choice against the best of the pool: " + number(geomean(regret), "%.4f") +
+           ", at most " + number(most, "%.3f") + " (" + worst + "). Planning took " +
+           number(geomean(planning), "%.1f") + " times the baseline's build, in counts.\n";
   }
 
   [[nodiscard]] std::string nothing_helps() const {
-    std::string out = "\n## Where the baseline is kept\n\n| rays | set-up | best of the pool | why |\n|---|---|---|---|\n";
+    std::string out =
+        "\n## Where the baseline is kept\n\n| rays | set-up | best of the pool | why |\n|---|---|---|---|\n";
     for (const auto& [name, cases] : groups_) {
       for (const auto& [key, c] : cases) {
         const json& plan = c.trees.at("auto");
         if (plan.at("kept") != "sah") continue;
         double best = c.cost("sah");
         for (const auto& [tree, row] : c.trees) best = std::min(best, row.at("cost").get<double>());
-        out.append("| ").append(name).append(" | ").append(c.set_up).append(", ").append(c.rays).append(" | ");
+        out.append("| ").append(name).append(" | ").append(c.set_up).append(", ").append(c.rays).append(
+            " | ");
         out.append(number(best / c.cost("sah"), "%.3f")).append(" | ");
         out.append(plan.at("reason").get<std::string>()).append(" |\n");
       }

@@ -76,14 +76,15 @@ class Learner {
     for (int k = 0; k < 3; ++k) {
       const int a = (k + 1) % 3;
       const int b = (k + 2) % 3;
-      const float doubled = (t.v1[a] - t.v0[a]) * (t.v2[b] - t.v0[b]) - (t.v1[b] - t.v0[b]) * (t.v2[a] - t.v0[a]);
+      const float doubled =
+          (t.v1[a] - t.v0[a]) * (t.v2[b] - t.v0[b]) - (t.v1[b] - t.v0[b]) * (t.v2[a] - t.v0[a]);
       area += options_.face_weights[static_cast<std::size_t>(k)] * 0.5F * std::fabs(doubled);
     }
     return area;
   }
 
-  // From areas alone, children before parents: rays meet a box as its measure says, are stopped the more the more
-  // triangles show, and look at all that they meet.
+  // From areas alone, children before parents: rays meet a box as its measure says, are stopped the more the
+  // more triangles show, and look at all that they meet.
   void expect() {
     const std::vector<std::uint32_t> order = parents_first(bvh_);
     std::vector<float> shown(bvh_.nodes.size());

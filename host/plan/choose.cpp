@@ -13,7 +13,8 @@ namespace gnomon {
 
 namespace {
 
-// No tree saves more than this share of a good one's cost: what a candidate is given to hope for before it is made.
+// No tree saves more than this share of a good one's cost: what a candidate is given to hope for before it is
+// made.
 constexpr double kMostSaved = 0.5;
 
 void require(bool ok, const std::string& option, const std::string& value, const std::string& range) {
@@ -44,8 +45,8 @@ std::vector<Ray> shuffled(std::vector<Ray> rays, std::uint64_t seed) {
 class Chooser {
  public:
   // Trees go to the end of `trees`.
-  Chooser(std::span<const Triangle> triangles, const PlanRays& rays, const PlanOptions& options, PlanPool& pool,
-          std::vector<PlanTree>& trees)
+  Chooser(std::span<const Triangle> triangles, const PlanRays& rays, const PlanOptions& options,
+          PlanPool& pool, std::vector<PlanTree>& trees)
       : triangles_(triangles), rays_(rays), options_(options), pool_(pool), trees_(trees) {
     pool_.aim_at(rays);
     probes_ = shuffled(thinned(rays.probe, options.probe_rays), options.seed);
@@ -65,7 +66,6 @@ class Chooser {
     }
     return std::move(decision_);
   }
-
 
  private:
   void take(const std::string& name) {
@@ -106,12 +106,13 @@ class Chooser {
   }
 
   [[nodiscard]] Race run_race() const {
-    return race(candidates_.size(), probes_.size(),
-                [&](std::size_t tree, std::size_t first, std::size_t count) {
-                  const OrderedTree& in = tree == 0 ? pool_.baseline().tree : candidates_[tree - 1].tree.tree;
-                  return ray_costs(in, triangles_, std::span(probes_).subspan(first, count), rays_.query);
-                },
-                options_.race);
+    return race(
+        candidates_.size(), probes_.size(),
+        [&](std::size_t tree, std::size_t first, std::size_t count) {
+          const OrderedTree& in = tree == 0 ? pool_.baseline().tree : candidates_[tree - 1].tree.tree;
+          return ray_costs(in, triangles_, std::span(probes_).subspan(first, count), rays_.query);
+        },
+        options_.race);
   }
 
   void judge() {
@@ -147,10 +148,11 @@ class Chooser {
   void explain(const Race& race, std::optional<std::size_t> best) {
     if (!best) {
       const bool dear = race.winner != 0xffffffffU;
-      decision_.reason = dear ? decision_.trials[race.winner].name + " is cheaper to trace but does not repay its price over " +
-                                    number(rays_.expected, 0) + " rays"
-                              : "no candidate is surely " + percent(options_.race.least_gain) +
-                                    " cheaper than the baseline";
+      decision_.reason =
+          dear ? decision_.trials[race.winner].name +
+                     " is cheaper to trace but does not repay its price over " + number(rays_.expected, 0) +
+                     " rays"
+               : "no candidate is surely " + percent(options_.race.least_gain) + " cheaper than the baseline";
       return;
     }
     const Trial& trial = decision_.trials[*best];
@@ -211,8 +213,8 @@ PlanBuilder reference_builder() {
           [](const Bvh& bvh, const OptimiseOptions& options) { return optimise_reference(bvh, options); }};
 }
 
-Plan make_plan(std::span<const Triangle> triangles, std::span<const PlanRays> rays, const PlanOptions& options,
-               const PlanBuilder& builder, const Progress& progress) {
+Plan make_plan(std::span<const Triangle> triangles, std::span<const PlanRays> rays,
+               const PlanOptions& options, const PlanBuilder& builder, const Progress& progress) {
   options.check();
   report(progress, "baseline", 0.0);
   PlanPool pool(triangles, options, builder);

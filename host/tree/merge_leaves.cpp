@@ -3,8 +3,8 @@
 #include <string>
 
 #include "gnomon/base/error.h"
-#include "gnomon/tree/parents_first.h"
 #include "gnomon/shared/measure_math.h"
+#include "gnomon/tree/parents_first.h"
 
 namespace gnomon {
 
@@ -33,9 +33,9 @@ class Merger {
  private:
   struct Below {
     float cost = 0.0F;
-    std::uint32_t first = 0;      // in leaf order
+    std::uint32_t first = 0;  // in leaf order
     std::uint32_t triangles = 0;
-    std::uint32_t inner = 0;      // inner nodes that stay
+    std::uint32_t inner = 0;  // inner nodes that stay
   };
 
   // Children before parents.
@@ -88,7 +88,8 @@ class Merger {
 }  // namespace
 
 void MergeOptions::check() const {
-  require(max_leaf_size >= 1 && max_leaf_size <= 255, "max_leaf_size", std::to_string(max_leaf_size), "1..255");
+  require(max_leaf_size >= 1 && max_leaf_size <= 255, "max_leaf_size", std::to_string(max_leaf_size),
+          "1..255");
   require(cost_inner > 0.0F && cost_inner <= 1000.0F, "cost_inner", std::to_string(cost_inner), "(0, 1000]");
   require(cost_triangle > 0.0F && cost_triangle <= 1000.0F, "cost_triangle", std::to_string(cost_triangle),
           "(0, 1000]");

@@ -17,9 +17,9 @@
 #include <utility>
 
 #include "contest.h"
-#include "gnomon/peers/embree_peer.h"
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/trace_device.h"
+#include "gnomon/peers/embree_peer.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon/scene/import.h"
 #include "gnomon_commit.h"

@@ -1,12 +1,12 @@
-// The question: which trees cost given rays less than the best surface-area tree, and does the plan choose them? Every
-// candidate of gnomon/plan on the thesis' set-ups and on generated scenes, by counts. JSON rows on stdout, one a set-up,
-// kind of rays and tree.
+// The question: which trees cost given rays less than the best surface-area tree, and does the plan choose
+// them? Every candidate of gnomon/plan on the thesis' set-ups and on generated scenes, by counts. JSON rows
+// on stdout, one a set-up, kind of rays and tree.
 //
 //   ray_aware_bench thesis --configs CONFIGS.json --scenes DIR [--only WORD]
 //   ray_aware_bench generated [--scenes atrium,city] [--triangles 100000]
 //
-// Cost of a ray: 1.0 a box test, 1.2 a triangle test; two boxes a node visited, the root's not counted. Trees are fitted
-// to rays of one seed, chosen by those of another and measured on a third's.
+// Cost of a ray: 1.0 a box test, 1.2 a triangle test; two boxes a node visited, the root's not counted. Trees
+// are fitted to rays of one seed, chosen by those of another and measured on a third's.
 #include <CLI/CLI.hpp>
 
 #include <array>
@@ -98,7 +98,8 @@ class Bench {
       const PlanTree& tree = plan.trees[trial.tree];
       row(start, trial.name, tree.tree, rays, expected,
           {{"fit_gain", trial.fit_gain},
-           {"probe_gain", trial.standing.baseline > 0.0 ? 1.0 - trial.standing.cost / trial.standing.baseline : 0.0},
+           {"probe_gain",
+            trial.standing.baseline > 0.0 ? 1.0 - trial.standing.cost / trial.standing.baseline : 0.0},
            {"verdict", to_string(trial.standing.verdict)},
            {"price_units", trial.price},
            {"build_units", tree.build_units}});
@@ -150,7 +151,8 @@ void run_thesis(const Settings& settings) {
     const auto [at, fresh] = scenes.try_emplace(set_up.scene);
     const std::string source = scene_source_of(set_up.scene);
     if (fresh && !source.starts_with("gen:")) at->second = import_scene(settings.models + "/" + source);
-    if (fresh && source.starts_with("gen:")) at->second = generate_scene(source.substr(4), source == "gen:random100" ? 100 : 1000, 1);
+    if (fresh && source.starts_with("gen:"))
+      at->second = generate_scene(source.substr(4), source == "gen:random100" ? 100 : 1000, 1);
     const AwareSetUp made = bench::thesis_set_up(set_up, at->second, settings.rays);
     Bench(settings, made).run();
   }

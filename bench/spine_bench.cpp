@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "gnomon/peers/embree_peer.h"
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/trace_device.h"
+#include "gnomon/peers/embree_peer.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon/scene/ray_set.h"
 #include "gnomon_commit.h"
@@ -28,12 +28,12 @@ namespace {
 
 using gnomon::Hit;
 using gnomon::Ray;
-using gnomon::peers::EmbreeQuality;
-using gnomon::peers::EmbreeScene;
 using gnomon::bench::json;
 using gnomon::bench::measure;
 using gnomon::bench::Paired;
 using gnomon::bench::spread_json;
+using gnomon::peers::EmbreeQuality;
+using gnomon::peers::EmbreeScene;
 
 constexpr int kRounds = 7;
 constexpr std::uint64_t kRays = 262144;

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "gnomon/peers/embree_peer.h"
 #include "gnomon/device/trace_device.h"
+#include "gnomon/peers/embree_peer.h"
 #include "gnomon/stability/catalogue.h"
 #include "gnomon_commit.h"
 

@@ -16,14 +16,15 @@ namespace {
 constexpr std::uint64_t kFitSeed = 101;
 constexpr std::uint64_t kProbeSeed = 202;
 constexpr std::uint64_t kMeasureSeed = 303;
-constexpr std::uint64_t kFitRays = 1024;    // drawn; a plan takes fewer
+constexpr std::uint64_t kFitRays = 1024;  // drawn; a plan takes fewer
 constexpr std::uint64_t kProbeRays = 2048;
-constexpr std::size_t kFewest = 256;        // fewer rays make no case
+constexpr std::size_t kFewest = 256;  // fewer rays make no case
 
 using Draw = std::function<std::vector<Ray>(std::uint64_t count, std::uint64_t seed)>;
 
 void add_case(AwareSetUp& out, const std::string& rays, Query query, std::uint64_t count, const Draw& draw) {
-  RayCase made{rays, query, {draw(kFitRays, kFitSeed), draw(kProbeRays, kProbeSeed), draw(count, kMeasureSeed)}};
+  RayCase made{
+      rays, query, {draw(kFitRays, kFitSeed), draw(kProbeRays, kProbeSeed), draw(count, kMeasureSeed)}};
   if (std::min({made.draws.fit.size(), made.draws.probe.size(), made.draws.measure.size()}) < kFewest) return;
   out.cases.push_back(std::move(made));
 }
@@ -115,12 +116,12 @@ AwareSetUp generated_set_up(const std::string& name, const Scene& scene, std::ui
   add_case(out, "primary", Query::kClosest, rays,
            [&](std::uint64_t count, std::uint64_t seed) { return primary_rays(scene, count, seed); });
   add_case(out, "bounce", Query::kClosest, rays, [&](std::uint64_t count, std::uint64_t seed) {
-    return thinned(sight.from(2 * count, seed, [&](const auto&... seen) { return bounce_rays(scene, seen...); }),
-                   count);
+    return thinned(
+        sight.from(2 * count, seed, [&](const auto&... seen) { return bounce_rays(scene, seen...); }), count);
   });
   const Draw shadow = [&](std::uint64_t count, std::uint64_t seed) {
-    return thinned(sight.from(4 * count, seed, [&](const auto&... seen) { return shadow_rays(scene, seen...); }),
-                   count);
+    return thinned(
+        sight.from(4 * count, seed, [&](const auto&... seen) { return shadow_rays(scene, seen...); }), count);
   };
   add_case(out, "shadow", Query::kAny, rays, shadow);
   add_case(out, "lit", Query::kAny, rays, [&](std::uint64_t count, std::uint64_t seed) {

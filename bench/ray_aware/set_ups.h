@@ -1,5 +1,6 @@
-// The rays of ray_aware_bench: the thesis' set-ups, and generated scenes with their cameras and lights. Every kind of rays
-// is drawn three times with different seeds: to fit to, to choose by, to measure. Feeds ray_aware_bench.cpp.
+// The rays of ray_aware_bench: the thesis' set-ups, and generated scenes with their cameras and lights. Every
+// kind of rays is drawn three times with different seeds: to fit to, to choose by, to measure. Feeds
+// ray_aware_bench.cpp.
 #pragma once
 
 #include <functional>
@@ -33,11 +34,12 @@ struct AwareSetUp {
   std::vector<RayCase> cases;
 };
 
-// One of the thesis': the triangles that touch the area; rays of the area (closest hit, and every box on their way),
-// shadow rays to its light from what a camera sees of it, and those of them that nothing stops.
+// One of the thesis': the triangles that touch the area; rays of the area (closest hit, and every box on
+// their way), shadow rays to its light from what a camera sees of it, and those of them that nothing stops.
 [[nodiscard]] AwareSetUp thesis_set_up(const SetUp& set_up, const Scene& scene, std::uint64_t rays);
 
-// A generated scene: primary, bounce and shadow rays, those that nothing stops, and rays of up to two lights' areas.
+// A generated scene: primary, bounce and shadow rays, those that nothing stops, and rays of up to two lights'
+// areas.
 [[nodiscard]] AwareSetUp generated_set_up(const std::string& name, const Scene& scene, std::uint64_t rays);
 
 }  // namespace gnomon::bench

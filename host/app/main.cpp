@@ -61,8 +61,8 @@ int run_action(const Action& action, Console& console) {
   try {
     return action(console);
   } catch (const Error& error) {
-    // LLVM inside a driver takes SIGINT as well and removes the files it compiles: that program fails for no other
-    // reason.
+    // LLVM inside a driver takes SIGINT as well and removes the files it compiles: that program fails for no
+    // other reason.
     if (interrupted()) {
       console.error("cancelled");
       return kInterrupted;

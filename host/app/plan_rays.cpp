@@ -24,8 +24,10 @@ const char* const kPlanHelp =
     "  sah-rays   and then by sampled rays\n"
     "  mix        built by that mixture from the start\n"
     "  mix-rays   and then by sampled rays\n"
-    "All but sah have the learnt order for any hit. auto tries them on rays drawn apart, keeps one that is surely 2 %\n"
-    "cheaper than sah and repays its price over the rays to come, and else keeps sah. Costs are counts, 1.0 a box\n"
+    "All but sah have the learnt order for any hit. auto tries them on rays drawn apart, keeps one that is "
+    "surely 2 %\n"
+    "cheaper than sah and repays its price over the rays to come, and else keeps sah. Costs are counts, 1.0 "
+    "a box\n"
     "and 1.2 a triangle, in the binary tree: the same plan on every machine.\n";
 
 PlanBuilder device_builder(const cl::Context& context) {
@@ -71,10 +73,13 @@ std::string plan_table(const Plan& plan) {
             decision.kept + "\n  " + decision.reason + "\n";
     if (decision.trials.empty()) continue;
     Table table({"tree", "cost a ray", "of sah", "+-", "probes", "verdict", "price", "saves"});
-    table.add({"sah", fixed(decision.baseline_cost, 2), "1.000", "", std::to_string(decision.probes), "", "", ""});
+    table.add(
+        {"sah", fixed(decision.baseline_cost, 2), "1.000", "", std::to_string(decision.probes), "", "", ""});
     for (const Trial& trial : decision.trials) {
       const double base = trial.standing.baseline;
-      const auto of_base = [&](double value) { return base > 0.0 ? fixed(value / base, 3) : std::string("-"); };
+      const auto of_base = [&](double value) {
+        return base > 0.0 ? fixed(value / base, 3) : std::string("-");
+      };
       table.add({trial.name, fixed(trial.standing.cost, 2), of_base(trial.standing.cost),
                  of_base(trial.standing.error), std::to_string(trial.standing.rays),
                  to_string(trial.standing.verdict), fixed(trial.price, 0), fixed(trial.saving, 0)});

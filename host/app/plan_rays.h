@@ -15,8 +15,8 @@ namespace gnomon::app {
 // Trees built and optimised on the device: the bytes of reference_builder(). The context must outlive it.
 [[nodiscard]] PlanBuilder device_builder(const cl::Context& context);
 
-// Rays of a kind that a scene's camera and lights give: fitted to those of seed + 1, judged by those of seed + 2, so that
-// neither are the rays of `seed`. `tree` finds where rays start that need hits.
+// Rays of a kind that a scene's camera and lights give: fitted to those of seed + 1, judged by those of seed
+// + 2, so that neither are the rays of `seed`. `tree` finds where rays start that need hits.
 [[nodiscard]] PlanRays rays_to_plan_for(RayKind kind, const Scene& scene, const cl::Context& context,
                                         const DeviceBvh& tree, double expected, std::uint64_t seed,
                                         const Progress& progress);

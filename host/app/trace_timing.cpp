@@ -37,7 +37,8 @@ TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::s
                        bool any_hit, const TraceOptions& how, std::uint64_t repeat, const Progress& progress,
                        std::span<const float> slot_keys) {
   TraceOptions options = how;
-  const DeviceWideBvh keyed = slot_keys.empty() ? DeviceWideBvh{} : collapse_device(context, tree, {}, nullptr, slot_keys);
+  const DeviceWideBvh keyed =
+      slot_keys.empty() ? DeviceWideBvh{} : collapse_device(context, tree, {}, nullptr, slot_keys);
   const auto tracer_of = [&] {
     return slot_keys.empty() ? Tracer(context, tree, options) : Tracer(context, keyed, options);
   };

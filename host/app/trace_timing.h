@@ -26,8 +26,8 @@ struct TimedTrace {
   double triangles_per_ray = 0.0;
 };
 
-// `how`: flavour and accuracy. One pass to warm up, `repeat` timed ones, one that counts. slot_keys: of a wide
-// tree (gnomon/tree/wide.h). Throws as Tracer and collapse_device.
+// `how`: flavour and accuracy. One pass to warm up, `repeat` timed ones, one that counts. slot_keys: of a
+// wide tree (gnomon/tree/wide.h). Throws as Tracer and collapse_device.
 [[nodiscard]] TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree,
                                      std::span<const Ray> rays, bool any_hit, const TraceOptions& how,
                                      std::uint64_t repeat, const Progress& progress,

@@ -63,8 +63,8 @@ void heed_loop_limit(BuildPlan& plan, const cl::DeviceInfo& device, const BuildO
 
 std::string BuildPlan::program_options() const {
   return "-DGN_WGS=" + std::to_string(work_group_size) + " -DGN_BINS=" + std::to_string(bins) +
-         " -DGN_ORDERED_AXES=" + (ordered_axes ? "1" : "0") + " -DGN_PUBLISHED_BINS=" + (published_bins ? "1" : "0") +
-         " -DGN_KIND=" + std::to_string(kind) + "u";
+         " -DGN_ORDERED_AXES=" + (ordered_axes ? "1" : "0") +
+         " -DGN_PUBLISHED_BINS=" + (published_bins ? "1" : "0") + " -DGN_KIND=" + std::to_string(kind) + "u";
 }
 
 std::vector<BufferNeed> BuildPlan::buffers() const {

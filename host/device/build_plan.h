@@ -13,8 +13,8 @@ namespace gnomon {
 struct BuildPlan {
   std::uint32_t count = 0;  // triangles
   std::uint32_t bins = 0;
-  bool ordered_axes = false;               // by a policy; no other way than all three is compiled in otherwise
-  bool published_bins = false;             // the published builder's keys and planes
+  bool ordered_axes = false;    // by a policy; no other way than all three is compiled in otherwise
+  bool published_bins = false;  // the published builder's keys and planes
   std::uint32_t kind = GN_MEASURE_LINEAR;  // of measure; no other but linear ones is compiled in
   std::uint32_t work_group_size = 0;       // 1: serial flavour
   std::uint32_t item_group_size = 0;       // of kernels with one work-item per element

@@ -22,8 +22,8 @@ struct DeviceWideBvh {
 };
 
 // The bytes depend on the tree, the options and the keys alone (wide.h says what keys are). Throws Error:
-// kInvalidArgument (options; keys; a leaf of more than GN_MAX_WIDE_LEAF triangles; a device that ends the loops this
-// takes), kOutOfMemory, kDevice.
+// kInvalidArgument (options; keys; a leaf of more than GN_MAX_WIDE_LEAF triangles; a device that ends the
+// loops this takes), kOutOfMemory, kDevice.
 [[nodiscard]] DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
                                             const CollapseOptions& options = {},
                                             BuildReport* report = nullptr,

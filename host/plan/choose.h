@@ -1,6 +1,6 @@
-// Which tree a scene's rays need, and no more than that: candidates fitted to sampled rays beside the best surface-area
-// tree, judged by other rays, kept only where they pay (host/notes/ray-aware.md). Not for making rays. Feeds `gnomon plan`,
-// benches.
+// Which tree a scene's rays need, and no more than that: candidates fitted to sampled rays beside the best
+// surface-area tree, judged by other rays, kept only where they pay (host/notes/ray-aware.md). Not for making
+// rays. Feeds `gnomon plan`, benches.
 #pragma once
 
 #include <cstdint>
@@ -22,37 +22,37 @@ namespace gnomon {
 struct PlanRays {
   std::string name;
   Query query = Query::kClosest;
-  std::vector<Ray> fit;     // trees are fitted to these
-  std::vector<Ray> probe;   // and judged by these: drawn apart, with another seed
-  double expected = 0.0;    // rays of this kind that will be traced; >= 0
+  std::vector<Ray> fit;    // trees are fitted to these
+  std::vector<Ray> probe;  // and judged by these: drawn apart, with another seed
+  double expected = 0.0;   // rays of this kind that will be traced; >= 0
 };
 
-// What work costs beside a box test, in whose units plans reckon. Defaults are rounded from rows of this library on
-// one thread (bench/results): a balanced build of 1e6 triangles takes 520 ms, a pass of reinsertion 23 ms, and a
-// unit of tracing about 6 ns.
+// What work costs beside a box test, in whose units plans reckon. Defaults are rounded from rows of this
+// library on one thread (bench/results): a balanced build of 1e6 triangles takes 520 ms, a pass of
+// reinsertion 23 ms, and a unit of tracing about 6 ns.
 struct PlanPrices {
-  double build = 80.0;         // of the balanced builder, a triangle
-  double pass = 4.0;           // of reinsertion by areas, a triangle and pass
-  double segment_test = 1.0;   // of reinsertion by sampled rays
-  double byte = 0.05;          // of a tree that is held beside the baseline
+  double build = 80.0;        // of the balanced builder, a triangle
+  double pass = 4.0;          // of reinsertion by areas, a triangle and pass
+  double segment_test = 1.0;  // of reinsertion by sampled rays
+  double byte = 0.05;         // of a tree that is held beside the baseline
 };
 
 // More than the best builder takes: what stands last should be hard to beat.
 [[nodiscard]] OptimiseOptions thorough();
 
 struct PlanOptions {
-  std::string choice = "auto";  // or the name of one of candidate_names(), which is then kept without a test
-  std::uint32_t fit_rays = 512;     // 1..kMostSegments
-  std::uint32_t probe_rays = 1024;  // at most; 1..65536
-  float mixture_share = 0.9F;       // of the rays' own measure beside surface area; [0, 1]
-  float every_share = 0.99F;        // the same for Query::kEvery, whose cost that measure is
-  float prior_share = 0.25F;        // SampleMeasure's
-  OptimiseOptions optimise = thorough();       // passes by areas, the baseline's too; the plan sets face_weights
+  std::string choice = "auto";   // or the name of one of candidate_names(), which is then kept without a test
+  std::uint32_t fit_rays = 512;  // 1..kMostSegments
+  std::uint32_t probe_rays = 1024;        // at most; 1..65536
+  float mixture_share = 0.9F;             // of the rays' own measure beside surface area; [0, 1]
+  float every_share = 0.99F;              // the same for Query::kEvery, whose cost that measure is
+  float prior_share = 0.25F;              // SampleMeasure's
+  OptimiseOptions optimise = thorough();  // passes by areas, the baseline's too; the plan sets face_weights
   OptimiseOptions optimise_rays = thorough();  // passes by sampled rays
   RaceOptions race;
   PlanPrices prices;
-  std::uint64_t seed = 1;           // of the order in which probes run
-  bool keep_tried = false;          // Plan::trees has every candidate that was made, not only what is kept
+  std::uint64_t seed = 1;   // of the order in which probes run
+  bool keep_tried = false;  // Plan::trees has every candidate that was made, not only what is kept
 
   // Throws Error{kInvalidArgument} naming the option, its value and its range.
   void check() const;
@@ -77,11 +77,11 @@ struct PlanTree {
 // How a candidate did.
 struct Trial {
   std::string name;
-  std::size_t tree = 0;      // place in Plan::trees; 0: not among them
+  std::size_t tree = 0;  // place in Plan::trees; 0: not among them
   Standing standing;
-  double fit_gain = 0.0;     // saving on the rays it was fitted to, a share: optimistic
-  double price = 0.0;        // units it costs beside the baseline: building, memory
-  double saving = 0.0;       // units it saves over the expected rays
+  double fit_gain = 0.0;  // saving on the rays it was fitted to, a share: optimistic
+  double price = 0.0;     // units it costs beside the baseline: building, memory
+  double saving = 0.0;    // units it saves over the expected rays
 };
 
 // What was decided for one kind of rays.
@@ -89,21 +89,21 @@ struct Decision {
   std::string rays;
   Query query = Query::kClosest;
   double expected = 0.0;
-  std::string kept;              // a candidate's name
-  std::size_t tree = 0;          // place in Plan::trees
-  std::string reason;            // in words
+  std::string kept;      // a candidate's name
+  std::size_t tree = 0;  // place in Plan::trees
+  std::string reason;    // in words
   std::uint64_t probes = 0;
   double probe_units = 0.0;
-  double baseline_cost = 0.0;    // a probe ray, units
-  double cost = 0.0;             // of what is kept
+  double baseline_cost = 0.0;  // a probe ray, units
+  double cost = 0.0;           // of what is kept
   std::vector<Trial> trials;
 };
 
 struct Plan {
-  std::vector<PlanTree> trees;   // the baseline first, then those that are kept
+  std::vector<PlanTree> trees;      // the baseline first, then those that are kept
   std::vector<Decision> decisions;  // one for each kind of rays given
-  double baseline_units = 0.0;   // building the baseline
-  double planning_units = 0.0;   // building and probing candidates, kept or not
+  double baseline_units = 0.0;      // building the baseline
+  double planning_units = 0.0;      // building and probing candidates, kept or not
 };
 
 // How the plan has trees built and reinsertion by areas done: in plain C++, or by a device, the same bytes.
@@ -113,11 +113,11 @@ struct PlanBuilder {
 };
 [[nodiscard]] PlanBuilder reference_builder();
 
-// Deterministic: counts decide, not clocks. Throws Error: kInvalidArgument (options, a choice that is not known, no
-// traceable ray to fit to), kBadScene, kCancelled.
+// Deterministic: counts decide, not clocks. Throws Error: kInvalidArgument (options, a choice that is not
+// known, no traceable ray to fit to), kBadScene, kCancelled.
 [[nodiscard]] Plan make_plan(std::span<const Triangle> triangles, std::span<const PlanRays> rays,
-                             const PlanOptions& options = {}, const PlanBuilder& builder = reference_builder(),
-                             const Progress& progress = {});
+                             const PlanOptions& options = {},
+                             const PlanBuilder& builder = reference_builder(), const Progress& progress = {});
 
 // One JSON object with every decision and its figures, as text.
 [[nodiscard]] std::string to_json(const Plan& plan);

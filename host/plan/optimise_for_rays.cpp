@@ -32,9 +32,9 @@ GnBox around(const GnBox& a, const GnBox& b) {
   return both;
 }
 
-// What boxes weigh, and where a node would weigh least (as gn_find_move searches). A larger box is met by all the
-// segments that meet a smaller one inside it, so few are left to be tested: those that meet the box around both and
-// neither of the two.
+// What boxes weigh, and where a node would weigh least (as gn_find_move searches). A larger box is met by all
+// the segments that meet a smaller one inside it, so few are left to be tested: those that meet the box
+// around both and neither of the two.
 class SampleCosts {
  public:
   SampleCosts(std::span<const Ray> segments, const SampleMeasure& measure) : measure_(measure) {
@@ -103,7 +103,8 @@ class SampleCosts {
         saved += costs_[pivot] - cost_within(shrunk, within, shrunk_mask);
       }
       const GnBox whole = box_of(slots[pivot]);
-      const bool same = std::equal(shrunk.lo, shrunk.lo + 3, whole.lo) && std::equal(shrunk.hi, shrunk.hi + 3, whole.hi);
+      const bool same =
+          std::equal(shrunk.lo, shrunk.lo + 3, whole.lo) && std::equal(shrunk.hi, shrunk.hi + 3, whole.hi);
       // Where the pivot does not shrink, nothing above it does.
       if (pivot == GN_ROOT_SLOT || search.left == 0 || (same && saved - search.own <= move.gain)) return move;
       beside = pivot ^ 1U;
@@ -166,8 +167,8 @@ class SampleCosts {
     for (std::size_t w = 0; w < words_; ++w) masks_[slot * words_ + w] = mask[w];
   }
 
-  // known: segments that surely meet the box; becomes all that do. within: those that may. Once it is clear that the box
-  // costs `enough` or more the rest is not tested, and something from there up is returned.
+  // known: segments that surely meet the box; becomes all that do. within: those that may. Once it is clear
+  // that the box costs `enough` or more the rest is not tested, and something from there up is returned.
   float cost_within(const GnBox& box, const Mask& within, Mask& known, float enough = GN_INFINITY) {
     std::uint32_t met = 0;
     const float areas = linear(box);
@@ -220,7 +221,8 @@ class SampleCosts {
         const float hope = next.saved - least_joint_cost(search, slot);
         below[side].saved = -GN_INFINITY;
         if (!(hope > move.gain) && !(inner && hope + costs_[slot] - search.own > move.gain)) continue;
-        const float reach = inner ? gn_max(0.0F, costs_[slot] - search.own) : 0.0F;  // what may be saved below it
+        const float reach =
+            inner ? gn_max(0.0F, costs_[slot] - search.own) : 0.0F;  // what may be saved below it
         const float enough = next.saved + reach - move.gain;
         const float gain = next.saved - joint_cost(search, slot, next.joint, below[side].joint, enough);
         if (gain > move.gain) {
@@ -259,8 +261,8 @@ void SampleMeasure::check() const {
                                                  " is outside its range of finite numbers >= 0");
   }
   if (prior_share > 0.0F && prior_share <= 1000.0F) return;
-  throw Error(ErrorCode::kInvalidArgument,
-              "sample option prior_share = " + std::to_string(prior_share) + " is outside its range (0, 1000]");
+  throw Error(ErrorCode::kInvalidArgument, "sample option prior_share = " + std::to_string(prior_share) +
+                                               " is outside its range (0, 1000]");
 }
 
 SampledTree optimise_for_rays(const Bvh& bvh, std::span<const Ray> segments, const SampleMeasure& measure,

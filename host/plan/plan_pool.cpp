@@ -65,8 +65,7 @@ double PlanPool::expected_cost() const {
   const std::vector<float> measures = face_measures(bvh, weights_);
   double sum = 0.0;
   for (std::size_t i = 0; i < measures.size(); ++i) {
-    const double step =
-        bvh.nodes[i].count > 0 ? kTriangleCost * bvh.nodes[i].count : 2.0 * kBoxCost;
+    const double step = bvh.nodes[i].count > 0 ? kTriangleCost * bvh.nodes[i].count : 2.0 * kBoxCost;
     sum += step * double{measures[i]};
   }
   return measures[0] > 0.0F ? sum / double{measures[0]} : sum;

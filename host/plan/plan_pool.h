@@ -1,5 +1,5 @@
-// The trees a plan chooses from, made when they are asked for; each goes on from another one. Not public. Feeds
-// choose.cpp.
+// The trees a plan chooses from, made when they are asked for; each goes on from another one. Not public.
+// Feeds choose.cpp.
 #pragma once
 
 #include <map>

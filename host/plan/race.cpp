@@ -133,10 +133,14 @@ class Runner {
 
 const char* to_string(Verdict verdict) {
   switch (verdict) {
-    case Verdict::kBetter: return "better";
-    case Verdict::kNotBetter: return "not better";
-    case Verdict::kBeaten: return "beaten";
-    case Verdict::kOpen: break;
+    case Verdict::kBetter:
+      return "better";
+    case Verdict::kNotBetter:
+      return "not better";
+    case Verdict::kBeaten:
+      return "beaten";
+    case Verdict::kOpen:
+      break;
   }
   return "open";
 }

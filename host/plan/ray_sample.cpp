@@ -78,9 +78,8 @@ std::vector<double> ray_costs(const OrderedTree& tree, std::span<const Triangle>
 
 std::array<float, 3> mixed_weights(std::span<const Ray> rays, float share) {
   if (!(share >= 0.0F && share <= 1.0F)) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "the share of the rays' own measure in a mixture is " + std::to_string(share) +
-                    "; it must lie in [0, 1]");
+    throw Error(ErrorCode::kInvalidArgument, "the share of the rays' own measure in a mixture is " +
+                                                 std::to_string(share) + "; it must lie in [0, 1]");
   }
   std::array<double, 3> mean{};
   for (Ray ray : rays) {

@@ -1,5 +1,5 @@
-// A few rays that stand for many: what trees are fitted to and judged by. Not for making rays (gnomon/scene/ray_set.h,
-// gnomon/areas/area_rays.h). Feeds this room.
+// A few rays that stand for many: what trees are fitted to and judged by. Not for making rays
+// (gnomon/scene/ray_set.h, gnomon/areas/area_rays.h). Feeds this room.
 #pragma once
 
 #include <array>
@@ -38,14 +38,15 @@ struct OrderedTree {
   std::vector<float> ranks;
 };
 
-// What each ray costs in the tree: kBoxCost a box tested, the root's not counted, kTriangleCost a triangle. (Thesis program: NODE_COST,
-// LEAF_COST.) kEvery tests no triangle for a hit, but counts it. Rays that are not traceable cost nothing.
+// What each ray costs in the tree: kBoxCost a box tested, the root's not counted, kTriangleCost a triangle.
+// (Thesis program: NODE_COST, LEAF_COST.) kEvery tests no triangle for a hit, but counts it. Rays that are
+// not traceable cost nothing.
 [[nodiscard]] std::vector<double> ray_costs(const OrderedTree& tree, std::span<const Triangle> triangles,
                                             std::span<const Ray> rays, Query query);
 
 // Face weights that measure boxes as these rays see them, mixed with surface area: share E|d_k| of unit
-// directions, over that of a cube, and 1 - share of the same weight for all faces. No rays: surface area. share in [0, 1];
-// throws Error{kInvalidArgument} otherwise.
+// directions, over that of a cube, and 1 - share of the same weight for all faces. No rays: surface area.
+// share in [0, 1]; throws Error{kInvalidArgument} otherwise.
 [[nodiscard]] std::array<float, 3> mixed_weights(std::span<const Ray> rays, float share);
 
 }  // namespace gnomon

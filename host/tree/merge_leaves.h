@@ -1,6 +1,6 @@
-// Joining the leaves of a finished tree where one leaf costs less than the nodes that part it. Builders end by cost as
-// they go; a tree that was split to single triangles and then optimised is ended here, at the least expected cost. Not
-// for wide trees (wide.h), whose collapse joins leaves itself. Feeds gnomon/plan.
+// Joining the leaves of a finished tree where one leaf costs less than the nodes that part it. Builders end
+// by cost as they go; a tree that was split to single triangles and then optimised is ended here, at the
+// least expected cost. Not for wide trees (wide.h), whose collapse joins leaves itself. Feeds gnomon/plan.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@ struct MergeOptions {
 // Of each node w . (dy dz, dx dz, dx dy).
 [[nodiscard]] std::vector<float> face_measures(const Bvh& bvh, const std::array<float, 3>& face_weights);
 
-// The tree of least cost that comes of `bvh` by making leaves of inner nodes, where a node is visited as often as
-// `measures` says (one a node, any unit). Leaf order stays, nodes are numbered as builders number. Throws
-// Error{kInvalidArgument}: options, another number of measures than nodes.
+// The tree of least cost that comes of `bvh` by making leaves of inner nodes, where a node is visited as
+// often as `measures` says (one a node, any unit). Leaf order stays, nodes are numbered as builders number.
+// Throws Error{kInvalidArgument}: options, another number of measures than nodes.
 [[nodiscard]] Bvh merge_leaves(const Bvh& bvh, std::span<const float> measures,
                                const MergeOptions& options = {});
 

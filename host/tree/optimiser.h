@@ -1,5 +1,6 @@
-// The passes of parallel reinsertion in plain C++ (host/notes/best-builder.md) over whatever says what boxes cost: face
-// weights (optimise.cpp) or sampled rays (gnomon/plan/optimise_for_rays.cpp). Not public. Feeds both.
+// The passes of parallel reinsertion in plain C++ (host/notes/best-builder.md) over whatever says what boxes
+// cost: face weights (optimise.cpp) or sampled rays (gnomon/plan/optimise_for_rays.cpp). Not public. Feeds
+// both.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +17,8 @@ inline bool is_inner_slot(const Node& node) {
   return node.count == 0;
 }
 
-// Costs: prepare(slots) is called whenever boxes have changed; of(slots, slot) is then a slot's cost, monotone under
-// inclusion; find(slots, above, slot) the best place for that node (gn_find_move says which).
+// Costs: prepare(slots) is called whenever boxes have changed; of(slots, slot) is then a slot's cost,
+// monotone under inclusion; find(slots, above, slot) the best place for that node (gn_find_move says which).
 template <typename Costs>
 class Optimiser {
  public:

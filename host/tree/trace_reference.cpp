@@ -99,7 +99,8 @@ ReferenceTrace trace_reference(const Bvh& bvh, std::span<const Triangle> triangl
                                bool any_hit, std::span<const float> ranks) {
   if (!ranks.empty() && ranks.size() != bvh.nodes.size()) {
     throw Error(ErrorCode::kInvalidArgument, std::to_string(ranks.size()) + " ranks for a tree of " +
-                                                 std::to_string(bvh.nodes.size()) + " nodes; learn them from this tree");
+                                                 std::to_string(bvh.nodes.size()) +
+                                                 " nodes; learn them from this tree");
   }
   return trace_by(rays, [&](const Ray& ray) { return Walk(bvh, triangles, ray, any_hit, ranks); });
 }

@@ -23,9 +23,9 @@ struct ReferenceTrace {
 };
 
 // Closest hits; with any_hit, each ray stops at the first hit it finds (hits[i].primitive says whether there
-// is one). The nearer child goes first; with any_hit and `ranks`, one a node (gnomon/plan/child_order.h), that
-// of higher rank does, the left one of equals. Throws Error{kInvalidArgument} for another number of ranks than
-// nodes.
+// is one). The nearer child goes first; with any_hit and `ranks`, one a node (gnomon/plan/child_order.h),
+// that of higher rank does, the left one of equals. Throws Error{kInvalidArgument} for another number of
+// ranks than nodes.
 [[nodiscard]] ReferenceTrace trace_reference(const Bvh& bvh, std::span<const Triangle> triangles,
                                              std::span<const Ray> rays, bool any_hit,
                                              std::span<const float> ranks = {});

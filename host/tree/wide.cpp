@@ -164,7 +164,8 @@ void check_slot_keys(std::span<const float> slot_keys, std::size_t nodes) {
     throw Error(ErrorCode::kInvalidArgument, std::to_string(slot_keys.size()) + " slot keys for a tree of " +
                                                  std::to_string(nodes) + " nodes; give one a node or none");
   }
-  const auto bad = std::find_if(slot_keys.begin(), slot_keys.end(), [](float key) { return std::isnan(key); });
+  const auto bad =
+      std::find_if(slot_keys.begin(), slot_keys.end(), [](float key) { return std::isnan(key); });
   if (bad == slot_keys.end()) return;
   throw Error(ErrorCode::kInvalidArgument,
               "slot key " + std::to_string(bad - slot_keys.begin()) + " is NaN; keys must have an order");

@@ -39,8 +39,9 @@ struct WideBvh {
 // Leaves of the binary tree may hold up to GN_MAX_WIDE_LEAF triangles; others make it throw
 // Error{kInvalidArgument}. Collapses with the least expected cost under the surface area heuristic (Ylitie,
 // Karras, Laine 2017). Same bytes as the device's.
-// A node's slots are in order of area, or of `slot_keys`, one a node of `bvh` (gnomon/plan/child_order.h): any hit
-// looks at the last one first. Throws Error{kInvalidArgument} also for another number of keys or one that is NaN.
+// A node's slots are in order of area, or of `slot_keys`, one a node of `bvh` (gnomon/plan/child_order.h):
+// any hit looks at the last one first. Throws Error{kInvalidArgument} also for another number of keys or one
+// that is NaN.
 [[nodiscard]] WideBvh collapse_reference(const Bvh& bvh, std::span<const GnTriangle> triangles,
                                          const CollapseOptions& options = {},
                                          std::span<const float> slot_keys = {});

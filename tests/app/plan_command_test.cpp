@@ -5,8 +5,8 @@
 
 #include "run_program.h"
 
-using program::run;
 using nlohmann::json;
+using program::run;
 
 namespace {
 
@@ -43,8 +43,8 @@ TEST_CASE("plan explains a decision for each kind of rays") {
 TEST_CASE("trace --plan answers as trace does, for less work") {
   for (const std::string kind : {"bounce", "shadow"}) {
     CAPTURE(kind);
-    const std::vector<std::string> plain{"trace", "gen:cottage:8k", "--rays", kind, "--count", "4k",
-                                         "--repeat", "1", "--json"};
+    const std::vector<std::string> plain{"trace", "gen:cottage:8k", "--rays", kind,    "--count",
+                                         "4k",    "--repeat",       "1",      "--json"};
     auto planned = plain;
     planned.insert(planned.end(), {"--plan", "auto"});
     auto baseline = plain;

@@ -21,8 +21,9 @@ int main() {
     double boxes = 0;
     for (const GnRayCounters& work : gnomon::Tracer(context, tree, counting).closest(few).counters)
       boxes += work.boxes;
-    std::printf("%zu rays in %.0f ms on the device; %zu of %zu shadow rays are blocked; %.1f boxes a bounce\n",
-                rays.size(), seen.kernel_ms, dark, shadow.size(), boxes / static_cast<double>(few.size()));
+    std::printf(
+        "%zu rays in %.0f ms on the device; %zu of %zu shadow rays are blocked; %.1f boxes a bounce\n",
+        rays.size(), seen.kernel_ms, dark, shadow.size(), boxes / static_cast<double>(few.size()));
     return dark > 0 && dark < shadow.size() && boxes > 0 ? 0 : 1;
   } catch (const gnomon::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());

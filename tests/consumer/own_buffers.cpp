@@ -1,4 +1,5 @@
-// Gnomon inside an OpenCL program: its context, its queue, its buffers. Everything but the build only enqueues.
+// Gnomon inside an OpenCL program: its context, its queue, its buffers. Everything but the build only
+// enqueues.
 #include <gnomon/gnomon.h>
 
 #include <cstdio>

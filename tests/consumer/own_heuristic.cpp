@@ -1,6 +1,7 @@
-// A tree by a heuristic of one's own. A measure is one function of a box, in kernels/shared/custom_measure.h; what
-// stands there is a worked example, the chance that a ball of radius half_width touches the box. Change it, build, and
-// builders on every device and the reference follow; host/notes/heuristics.md says what a measure must keep.
+// A tree by a heuristic of one's own. A measure is one function of a box, in kernels/shared/custom_measure.h;
+// what stands there is a worked example, the chance that a ball of radius half_width touches the box. Change
+// it, build, and builders on every device and the reference follow; host/notes/heuristics.md says what a
+// measure must keep.
 #include <gnomon/gnomon.h>
 
 #include <cstdio>

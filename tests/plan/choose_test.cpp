@@ -1,4 +1,5 @@
-// Plans: never dearer than the best surface-area tree on other rays, nothing where it cannot pay, and they say why.
+// Plans: never dearer than the best surface-area tree on other rays, nothing where it cannot pay, and they
+// say why.
 #include "gnomon/plan/choose.h"
 
 #include <catch2/catch.hpp>
@@ -168,5 +169,6 @@ TEST_CASE("plan options out of range are refused") {
   options.prices.pass = -1.0;
   REQUIRE_THROWS_WITH(options.check(), Catch::Contains("prices"));
   auto rays = both_kinds(-1.0);
-  REQUIRE_THROWS_WITH(gnomon::make_plan(cottage().triangles, rays), Catch::Contains("expected rays of primary"));
+  REQUIRE_THROWS_WITH(gnomon::make_plan(cottage().triangles, rays),
+                      Catch::Contains("expected rays of primary"));
 }

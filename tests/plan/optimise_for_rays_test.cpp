@@ -34,7 +34,8 @@ OptimiseOptions every_node() {
 }
 
 // Each box against each segment, without masks.
-std::vector<float> plain_measures(const Bvh& bvh, const std::vector<GnRay>& segments, const SampleMeasure& measure) {
+std::vector<float> plain_measures(const Bvh& bvh, const std::vector<GnRay>& segments,
+                                  const SampleMeasure& measure) {
   std::vector<float> out;
   const auto linear = [&](const gnomon::Node& node) {
     return gn_linear_measure(measure.face_weights.data(), node.lo, node.hi);
@@ -43,7 +44,8 @@ std::vector<float> plain_measures(const Bvh& bvh, const std::vector<GnRay>& segm
     std::uint32_t met = 0;
     for (const GnRay& ray : segments) {
       const GnRayFrame frame = gn_ray_frame(&ray);
-      const float entry = gn_box_entry(&frame, node.lo, node.hi, ray.tmin, gn_slab_limit(gn_finite_tmax(ray.tmax)));
+      const float entry =
+          gn_box_entry(&frame, node.lo, node.hi, ray.tmin, gn_slab_limit(gn_finite_tmax(ray.tmax)));
       met += entry < GN_INFINITY ? 1 : 0;
     }
     out.push_back(static_cast<float>(met) / static_cast<float>(segments.size()) +
@@ -54,7 +56,8 @@ std::vector<float> plain_measures(const Bvh& bvh, const std::vector<GnRay>& segm
 
 double weight_of(const Bvh& bvh, const std::vector<float>& measures) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < measures.size(); ++i) sum += bvh.nodes[i].count == 0 ? double{measures[i]} : 0.0;
+  for (std::size_t i = 0; i < measures.size(); ++i)
+    sum += bvh.nodes[i].count == 0 ? double{measures[i]} : 0.0;
   return sum;
 }
 
@@ -107,12 +110,14 @@ TEST_CASE("the rays a tree was optimised for have less to do, and hit the same")
     }
     rays.push_back(ray);
   }
-  const Bvh before = gnomon::optimise_reference(gnomon::build_reference(triangles, single_leaves()), every_node());
+  const Bvh before =
+      gnomon::optimise_reference(gnomon::build_reference(triangles, single_leaves()), every_node());
   const auto segments = gnomon::segments_of(before, triangles, rays, gnomon::Query::kClosest);
   const SampledTree after = optimise_for_rays(before, segments, {}, every_node());
   const auto sum = [&](const Bvh& bvh) {
     double all = 0.0;
-    for (const double cost : gnomon::ray_costs({bvh, {}}, triangles, rays, gnomon::Query::kClosest)) all += cost;
+    for (const double cost : gnomon::ray_costs({bvh, {}}, triangles, rays, gnomon::Query::kClosest))
+      all += cost;
     return all;
   };
   REQUIRE(sum(after.bvh) < 0.9 * sum(before));
@@ -128,7 +133,8 @@ TEST_CASE("the rays a tree was optimised for have less to do, and hit the same")
 TEST_CASE("segments end where their query stops looking") {
   const std::vector<GnTriangle> roof{gnomon::test::triangle({-9, 2, -9}, {9, 2, -9}, {0, 2, 20})};
   const Bvh bvh = gnomon::build_reference(roof);
-  const std::vector<GnRay> rays{gnomon::test::ray({0, 0, 0}, {0, 1, 0}), gnomon::test::ray({0, 0, 0}, {0, -1, 0}),
+  const std::vector<GnRay> rays{gnomon::test::ray({0, 0, 0}, {0, 1, 0}),
+                                gnomon::test::ray({0, 0, 0}, {0, -1, 0}),
                                 gnomon::test::ray({0, NAN, 0}, {0, 1, 0})};
   const auto closest = gnomon::segments_of(bvh, roof, rays, gnomon::Query::kClosest);
   REQUIRE(closest.size() == 2);

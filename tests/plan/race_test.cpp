@@ -45,7 +45,8 @@ class Costs {
 };
 
 Race run(Costs& costs, std::size_t candidates, const RaceOptions& options = {}) {
-  return race(candidates, 1024, [&](std::size_t t, std::size_t f, std::size_t c) { return costs(t, f, c); }, options);
+  return race(
+      candidates, 1024, [&](std::size_t t, std::size_t f, std::size_t c) { return costs(t, f, c); }, options);
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ double cost_of(const Bvh& bvh, const MergeOptions& options) {
   const auto measures = gnomon::face_measures(bvh, kSurface);
   double sum = 0.0;
   for (std::size_t i = 0; i < measures.size(); ++i) {
-    const double step =
-        bvh.nodes[i].count > 0 ? double{options.cost_triangle} * bvh.nodes[i].count : double{options.cost_inner};
+    const double step = bvh.nodes[i].count > 0 ? double{options.cost_triangle} * bvh.nodes[i].count
+                                               : double{options.cost_inner};
     sum += step * double{measures[i]};
   }
   return sum;

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "compared_methods.h"
 #include "run_program.h"
 
 using Catch::Contains;
@@ -17,7 +18,7 @@ std::vector<std::string> command(const std::string& page, const std::vector<std:
   std::vector<std::string> words{"compare",
                                  "gen:cottage:7k",
                                  "--methods",
-                                 "sah,pah-window,embree",
+                                 program::kComparedMethods,
                                  "--rays",
                                  "primary,shadow,light",
                                  "--ray-count",
@@ -69,6 +70,7 @@ TEST_CASE("compare measures every method on the same rays and writes page, rows 
     CAPTURE(name);
     REQUIRE(methods.contains(name));
   }
+  REQUIRE(methods.contains("embree-robust") == program::kHasPeers);
   REQUIRE_FALSE(methods.contains("pah-near-plane@camera"));  // not asked for
 
   const auto traces = rows_of(report, "trace");

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "compared_methods.h"
 #include "run_program.h"
 
 using Catch::Contains;
@@ -148,7 +149,7 @@ void check_all(const json& seen) {
 
 TEST_CASE("the page works in a browser: wide, on a phone, and in the dark") {
   const Folder folder;
-  const auto outcome = program::run({"compare", "gen:cottage:7k", "--methods", "sah,pah-window,embree",
+  const auto outcome = program::run({"compare", "gen:cottage:7k", "--methods", program::kComparedMethods,
                                      "--rays", "primary,shadow,light", "--ray-count", "2k", "--judged-rays",
                                      "300", "--rounds", "3", "-o", folder.file("r.html"), "--quiet"});
   CAPTURE(outcome.err);

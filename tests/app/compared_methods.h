@@ -1,0 +1,14 @@
+// What comparisons in tests set beside each other: Embree too, where the program was built with it.
+#pragma once
+
+namespace program {
+
+#ifdef GNOMON_HAS_EMBREE
+inline constexpr bool kHasPeers = true;
+inline constexpr const char* kComparedMethods = "sah,pah-window,embree";
+#else
+inline constexpr bool kHasPeers = false;
+inline constexpr const char* kComparedMethods = "sah,pah-window";
+#endif
+
+}  // namespace program

@@ -92,42 +92,28 @@ static inline int8 sort_eight(int8 keys) {
 // be negative.
 static inline int8 entry_keys(float8 entries) { return (as_int8(entries) & ~7) | GN_LANES8; }
 
-// Of the lanes in mask, `count` of them and at least two, returns the link of the one with the least entry, and writes
-// the others' keys and links, farthest first, to keys_out and links_out. Both must have room for eight.
-static inline uint put_by_distance(float8 entries, uint mask, __global const uint* links, uint count, uint* keys_out,
+// Writes the keys and the links of the lanes in mask, `count` of them, to keys_out and links_out, farthest first. Both must
+// have room for eight. Without a branch on how many they are up to four: which it is cannot be foreseen.
+static inline void put_by_distance(float8 entries, uint mask, uint count, __global const uint* links, uint* keys_out,
                                    uint* links_out) {
 #if GN_EIGHT_AVX512
-  int8 keys =
-      as_int8(__builtin_ia32_compresssi256_mask(entry_keys(entries), (int8)INT_MAX, (uchar)mask));
-  if (count == 2u) {
-    const uint a = as_uint2(keys.lo.lo).x, b = as_uint2(keys.lo.lo).y;
-    const uint near = a < b ? a : b, far = a < b ? b : a;
-    keys_out[0] = far;
-    links_out[0] = links[far & 7u];
-    return links[near & 7u];
-  }
+  int8 keys = as_int8(__builtin_ia32_compresssi256_mask(entry_keys(entries), (int8)INT_MAX, (uchar)mask));
   keys = count <= 4u ? sort_first_four(keys) : sort_eight(keys);
-  {
-    const uint near = (uint)keys.s0;
-    keys = as_int8(__builtin_ia32_permvarsi256(keys, (int8)(count - 1u) - GN_LANES8));
-    vstore8(as_uint8(keys), 0, keys_out);
-    vstore8(as_uint8(__builtin_ia32_permvarsi256(as_int8(vload8(0, links)), keys)), 0, links_out);
-    return links[near & 7u];
-  }
+  keys = as_int8(__builtin_ia32_permvarsi256(keys, (int8)((int)count - 1) - GN_LANES8));
+  vstore8(as_uint8(keys), 0, keys_out);
+  vstore8(as_uint8(__builtin_ia32_permvarsi256(as_int8(vload8(0, links)), keys)), 0, links_out);
 #else
-  const int8 chosen = ((int8)mask & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
-  const int8 keys = sort_eight(chosen ? entry_keys(entries) : (int8)INT_MAX);
+  const int8 chosen = ((int8)((int)mask) & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
   uint sorted[8], i;
-  vstore8(as_uint8(keys), 0, sorted);
-  for (i = 1u; i < count; ++i) {
+  vstore8(as_uint8(sort_eight(chosen ? entry_keys(entries) : (int8)INT_MAX)), 0, sorted);
+  for (i = 0u; i < count; ++i) {
     keys_out[count - 1u - i] = sorted[i];
     links_out[count - 1u - i] = links[sorted[i] & 7u];
   }
-  return links[sorted[0] & 7u];
 #endif
 }
 
-// The same for packets: all of `count` lanes' keys, farthest first, and base plus the lane for each.
+// The same for packets, with base plus the lane instead of links.
 static inline void put_places(float8 entries, uint mask, uint count, uint base, uint* keys_out, uint* places_out) {
 #if GN_EIGHT_AVX512
   int8 keys = as_int8(__builtin_ia32_compresssi256_mask(entry_keys(entries), (int8)INT_MAX, (uchar)mask));

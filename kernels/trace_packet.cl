@@ -57,6 +57,19 @@ static inline uint packet_from(GnPacket* p, __global const float8* rays, uint in
   return 0u;
 }
 
+// The first packet from ray `index` on: returns its groups and leaves in *start where it begins; 0 groups: none, *start is
+// end.
+static inline uint next_packet(GnPacket* p, __global const float8* rays, uint index, uint end, float size, uint* start) {
+  uint groups = 0u;
+  while (index < end) {
+    groups = packet_from(p, rays, index, end - index, size);
+    if (groups > 0u) break;
+    index = gn_run_end(index, end, 16u);
+  }
+  *start = index;
+  return groups;
+}
+
 // Closest hit of rays [0, count). invalid_rays counts rays that are not traceable; they miss.
 __kernel void trace_closest(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
                             __global const float8* rays, __global float4* hits, volatile __global uint* invalid_rays,
@@ -64,20 +77,19 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const GnT
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
   const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
   const float size = size_of_root(nodes);
+  const GnWideBatch batch = {nodes, blocks, rays, hits, 0, invalid_rays, counters};
   GnPacket packet;
   GnFound found;
   found.count = 0u;
   while (index < end) {
-    const uint groups = packet_from(&packet, rays, index, end - index, size);
-    if (groups > 0u) {
-      walk_packet(&packet, nodes, blocks, rays, 0);
-      write_packet(&packet, &found, blocks, rays, hits);
-      store_packet_counters(&packet, counters);
-      index += 16u * groups;
-    } else {
-      const uint stop = gn_run_end(index, end, 16u);
-      for (; index < stop; ++index) trace_one_closest(nodes, blocks, rays, hits, invalid_rays, counters, index);
-    }
+    uint start;
+    const uint groups = next_packet(&packet, rays, index, end, size, &start);
+    trace_singly(&batch, index, start, 0);
+    if (groups == 0u) break;
+    walk_packet(&packet, nodes, blocks, rays, 0);
+    write_packet(&packet, &found, blocks, rays, hits);
+    store_packet_counters(&packet, counters);
+    index = start + 16u * groups;
   }
   if (found.count > 0u) settle_found(&found, blocks, rays, hits);
 }
@@ -89,18 +101,16 @@ __kernel void trace_any(__global const GnWideNode* nodes, __global const GnTrian
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
   const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
   const float size = size_of_root(nodes);
+  const GnWideBatch batch = {nodes, blocks, rays, 0, occluded, invalid_rays, counters};
   GnPacket packet;
   while (index < end) {
-    const uint groups = packet_from(&packet, rays, index, end - index, size);
-    if (groups > 0u) {
-      uint i;
-      walk_packet(&packet, nodes, blocks, rays, 1);
-      for (i = 0u; i < 16u * groups; ++i) occluded[index + i] = (packet.found[i >> 4] >> (i & 15u)) & 1u;
-      store_packet_counters(&packet, counters);
-      index += 16u * groups;
-    } else {
-      const uint stop = gn_run_end(index, end, 16u);
-      for (; index < stop; ++index) trace_one_any(nodes, blocks, rays, occluded, invalid_rays, counters, index);
-    }
+    uint start, i;
+    const uint groups = next_packet(&packet, rays, index, end, size, &start);
+    trace_singly(&batch, index, start, 1);
+    if (groups == 0u) break;
+    walk_packet(&packet, nodes, blocks, rays, 1);
+    for (i = 0u; i < 16u * groups; ++i) occluded[start + i] = (packet.found[i >> 4] >> (i & 15u)) & 1u;
+    store_packet_counters(&packet, counters);
+    index = start + 16u * groups;
   }
 }

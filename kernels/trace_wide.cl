@@ -1,6 +1,6 @@
-// Batched ray tracing over the wide tree, ray by ray: the flavour for CPUs. A work-item traces a run of rays one after the
-// other, in a work-group of its own: compilers that loop over a group's work-items give each its own copy of everything
-// private, which then leaves the cache.
+// Batched ray tracing over the wide tree, ray by ray: the flavour for CPUs. A work-item traces a run of rays in a work-group
+// of its own: compilers that loop over a group's work-items give each its own copy of everything private, which then leaves
+// the cache.
 // Options: those of wide_walk.h, GN_RAYS_PER_ITEM.
 #include "wide_walk.h"
 
@@ -12,16 +12,16 @@
 __kernel void trace_closest(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
                             __global const float8* rays, __global float4* hits, volatile __global uint* invalid_rays,
                             __global GnRayCounters* counters, uint count) {
-  uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
-  const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
-  for (; index < end; ++index) trace_one_closest(nodes, blocks, rays, hits, invalid_rays, counters, index);
+  const uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
+  const GnWideBatch batch = {nodes, blocks, rays, hits, 0, invalid_rays, counters};
+  trace_singly(&batch, index, gn_run_end(index, count, GN_RAYS_PER_ITEM), 0);
 }
 
 // Any hit of rays [0, count): occluded receives 1 or 0.
 __kernel void trace_any(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
                         __global const float8* rays, __global uint* occluded, volatile __global uint* invalid_rays,
                         __global GnRayCounters* counters, uint count) {
-  uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
-  const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
-  for (; index < end; ++index) trace_one_any(nodes, blocks, rays, occluded, invalid_rays, counters, index);
+  const uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
+  const GnWideBatch batch = {nodes, blocks, rays, 0, occluded, invalid_rays, counters};
+  trace_singly(&batch, index, gn_run_end(index, count, GN_RAYS_PER_ITEM), 1);
 }

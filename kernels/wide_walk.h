@@ -1,14 +1,21 @@
-// One ray through the wide tree, eight boxes or eight triangles a step. Closest hit visits children by distance, any
+// Rays through the wide tree one by one, eight boxes or eight triangles a step. Closest hit visits children by distance, any
 // hit the largest first. Hits are those of trace.cl, bit for bit.
-// Options: GN_WIDE_STACK (at least 7 * depth of the wide tree + 8), GN_COUNTERS, GN_PORTABLE (eight.h).
-// Feeds trace_wide.cl and trace_packet.cl.
+// A step is short and ends with the next node's address, which nothing can foresee: a processor would wait for memory and
+// for branches it guessed wrong. So several rays take steps by turns: while one's node is on its way from memory, others
+// compute, and steps of different rays, which do not depend on each other, run side by side.
+// Options: GN_WIDE_STACK (at least 7 * depth of the wide tree + 8), GN_COUNTERS, GN_PORTABLE (eight.h), GN_RAYS_AT_ONCE
+// (1: one after the other, each in a loop of its own, for devices that end long loops). Feeds trace_wide.cl, trace_packet.cl.
 #ifndef GNOMON_WIDE_WALK_H
 #define GNOMON_WIDE_WALK_H
 
+#include "ahead.h"
 #include "wide_leaf.h"
 
 #ifndef GN_WIDE_STACK
 #define GN_WIDE_STACK 256
+#endif
+#ifndef GN_RAYS_AT_ONCE
+#define GN_RAYS_AT_ONCE 1
 #endif
 
 #define GN_PLANES(node, offset) (*(__global const float8*)((__global const char*)(node) + (offset)))
@@ -43,66 +50,6 @@ static inline uint filled_slots(__global const GnWideNode* node) {
 #define GN_COUNT_BOXES(node)
 #endif
 
-static inline void walk_closest(GnWideWalk* walk, const GnWideRay* ray, __global const GnWideNode* nodes,
-                                __global const GnTriangleBlock* blocks) {
-  uint links[GN_WIDE_STACK], keys[GN_WIDE_STACK];
-  uint height = 0u, current = 0u;
-  for (;;) {
-    uint met = 1u;
-    while (!(current & GN_LEAF_LINK)) {
-      __global const GnWideNode* node = nodes + current;
-      float8 entries;
-      GN_COUNT_BOXES(node);
-      met = boxes_met(ray, node, walk->limit, &entries);
-      if (met == 0u) break;
-      if ((met & (met - 1u)) == 0u) {
-        current = node->links[lowest_bit(met)];
-      } else {
-        const uint count = popcount(met);
-        current = put_by_distance(GN_MAX8(entries, (float8)0.0f), met, node->links, count, keys + height,
-                                  links + height);
-        height += count - 1u;
-      }
-    }
-    if (met != 0u) test_wide_leaf(walk, ray, blocks, current, 0);
-    // The next waiting node that is not beyond the best hit found since it was pushed.
-    do {
-      if (height == 0u) return;
-      height -= 1u;
-    } while (as_float(keys[height] & ~7u) > fmax(walk->limit, 0.0f));
-    current = links[height];
-  }
-}
-
-static inline void walk_any(GnWideWalk* walk, const GnWideRay* ray, __global const GnWideNode* nodes,
-                            __global const GnTriangleBlock* blocks) {
-  uint links[GN_WIDE_STACK];
-  uint height = 0u, current = 0u;
-  for (;;) {
-    uint met = 1u;
-    while (!(current & GN_LEAF_LINK)) {
-      __global const GnWideNode* node = nodes + current;
-      float8 entries;
-      uint largest;
-      GN_COUNT_BOXES(node);
-      met = boxes_met(ray, node, walk->limit, &entries);
-      if (met == 0u) break;
-      largest = highest_bit(met);
-      current = node->links[largest];
-      met ^= 1u << largest;
-      if (met != 0u) {
-        put_in_order(met, node->links, links + height);
-        height += popcount(met);
-      }
-      met = 1u;
-    }
-    if (met != 0u && test_wide_leaf(walk, ray, blocks, current, 1)) return;
-    if (height == 0u) return;
-    height -= 1u;
-    current = links[height];
-  }
-}
-
 static inline GnWideWalk start_walk(const GnRay* ray) {
   GnWideWalk walk;
   walk.best.t = INFINITY;
@@ -121,43 +68,126 @@ static inline GnWideWalk start_walk(const GnRay* ray) {
   return walk;
 }
 
-static inline void store_counters(__global GnRayCounters* counters, uint index, const GnWideWalk* walk) {
+// A ray on its way: the node or leaf it looks at next, and those that wait, with where it enters them.
+typedef struct GnWalker {
+  GnWideRay ray;
+  GnWideWalk walk;
+  uint index;
+  uint current;
+  uint height;
+  uint links[GN_WIDE_STACK];
+  uint keys[GN_WIDE_STACK];
+} GnWalker;
+
+// What a batch is traced against, and where answers go: hits, or occluded for any hit.
+typedef struct GnWideBatch {
+  __global const GnWideNode* nodes;
+  __global const GnTriangleBlock* blocks;
+  __global const float8* rays;
+  __global float4* hits;
+  __global uint* occluded;
+  volatile __global uint* invalid_rays;
+  __global GnRayCounters* counters;
+} GnWideBatch;
+
+static inline void send_for(const GnWideBatch* batch, uint link) {
+  const int is_leaf = (link & GN_LEAF_LINK) != 0u;
+  __global const char* at = is_leaf ? (__global const char*)(batch->blocks + gn_link_block(link))
+                                    : (__global const char*)(batch->nodes + link);
+  expect_range(at, sizeof(GnWideNode));
+}
+
+// One node or leaf. Returns 0 when the walk is over. All children met go onto the stack and the nearest, or for any hit the
+// largest, comes off again: how many they are decides no branch.
+static inline int step(GnWalker* walker, const GnWideBatch* batch, int any_hit) {
+  GnWideWalk* walk = &walker->walk;
+  uint height = walker->height;
+  if ((walker->current & GN_LEAF_LINK) != 0u) {
+    if (test_wide_leaf(walk, &walker->ray, batch->blocks, walker->current, any_hit)) return 0;
+  } else {
+    __global const GnWideNode* node = batch->nodes + walker->current;
+    float8 entries;
+    const uint met = boxes_met(&walker->ray, node, walk->limit, &entries);
+    const uint count = popcount(met);
+    GN_COUNT_BOXES(node);
+    if (any_hit) {
+      put_in_order(met, node->links, walker->links + height);
+    } else {
+      put_by_distance(GN_MAX8(entries, (float8)0.0f), met, count, node->links, walker->keys + height,
+                      walker->links + height);
+    }
+    height += count;
+  }
+  // The next that waits and is not beyond the best hit found since it was put there.
+  do {
+    if (height == 0u) return 0;
+    height -= 1u;
+  } while (!any_hit && as_float(walker->keys[height] & ~7u) > fmax(walk->limit, 0.0f));
+  walker->height = height;
+  walker->current = walker->links[height];
+  send_for(batch, walker->current);
+  return 1;
+}
+
+static inline void hand_over(GnWalker* walker, const GnWideBatch* batch, int any_hit) {
+  const uint index = walker->index;
+  const GnHit* best = &walker->walk.best;
+  if (any_hit) {
+    batch->occluded[index] = walker->walk.found;
+  } else {
+    settle(&walker->walk, &walker->ray);
+    batch->hits[index] = (float4)(best->t, best->u, best->v, as_float(best->primitive));
+  }
 #if GN_COUNTERS
-  counters[index].boxes = walk->boxes;
-  counters[index].triangles = walk->triangles;
+  batch->counters[index].boxes = walker->walk.boxes;
+  batch->counters[index].triangles = walker->walk.triangles;
 #endif
 }
 
-static inline void trace_one_closest(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
-                                     __global const float8* rays, __global float4* hits,
-                                     volatile __global uint* invalid_rays, __global GnRayCounters* counters,
-                                     uint index) {
-  const GnRay ray = load_ray(rays, index);
-  GnWideWalk walk = start_walk(&ray);
+// Takes up a ray, or hands it over as a miss at once where it is not traceable, and returns 0.
+static inline uint take_up(GnWalker* walker, const GnWideBatch* batch, uint index, int any_hit) {
+  const GnRay ray = load_ray(batch->rays, index);
+  walker->walk = start_walk(&ray);
+  walker->index = index;
+  walker->current = 0u;
+  walker->height = 0u;
   if (gn_ray_is_valid(&ray)) {
-    const GnWideRay wide = wide_ray(&ray);
-    walk_closest(&walk, &wide, nodes, blocks);
-    settle(&walk, &wide);
-  } else {
-    atomic_inc(invalid_rays);
+    walker->ray = wide_ray(&ray);
+    return 1u;
   }
-  hits[index] = (float4)(walk.best.t, walk.best.u, walk.best.v, as_float(walk.best.primitive));
-  store_counters(counters, index, &walk);
+  atomic_inc(batch->invalid_rays);
+  hand_over(walker, batch, any_hit);
+  return 0u;
 }
 
-static inline void trace_one_any(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
-                                 __global const float8* rays, __global uint* occluded,
-                                 volatile __global uint* invalid_rays, __global GnRayCounters* counters, uint index) {
-  const GnRay ray = load_ray(rays, index);
-  GnWideWalk walk = start_walk(&ray);
-  if (gn_ray_is_valid(&ray)) {
-    const GnWideRay wide = wide_ray(&ray);
-    walk_any(&walk, &wide, nodes, blocks);
-  } else {
-    atomic_inc(invalid_rays);
+// Traces rays [index, end).
+static inline void trace_singly(const GnWideBatch* batch, uint index, uint end, int any_hit) {
+#if GN_RAYS_AT_ONCE > 1
+  GnWalker walkers[GN_RAYS_AT_ONCE];
+  uint on_way[GN_RAYS_AT_ONCE], count = 0u, turn = 0u;
+  for (; index < end && count < GN_RAYS_AT_ONCE; ++index) {
+    on_way[count] = count;
+    count += take_up(walkers + count, batch, index, any_hit);
   }
-  occluded[index] = walk.found;
-  store_counters(counters, index, &walk);
+  while (count > 0u) {
+    GnWalker* walker = walkers + on_way[turn];
+    uint goes_on = (uint)step(walker, batch, any_hit);
+    if (!goes_on) {
+      hand_over(walker, batch, any_hit);
+      for (; !goes_on && index < end; ++index) goes_on = take_up(walker, batch, index, any_hit);
+      if (!goes_on) on_way[turn] = on_way[--count];
+    }
+    turn = turn + goes_on < count ? turn + goes_on : 0u;
+  }
+#else
+  GnWalker walker;
+  for (; index < end; ++index) {
+    if (!take_up(&walker, batch, index, any_hit)) continue;
+    while (step(&walker, batch, any_hit)) {
+    }
+    hand_over(&walker, batch, any_hit);
+  }
+#endif
 }
 
 #endif

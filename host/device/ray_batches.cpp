@@ -14,6 +14,12 @@ constexpr std::size_t kBatchInPasses = 1U << 15U;
 // Turns of loops that one step may cost the up to 16 rays a device's vector unit traces side by side.
 constexpr std::uint32_t kTurnsPerStep = 64;
 
+// Rays of a CPU's work-item that take steps by turns (wide_walk.h): from eight on their walkers' number changes nothing, and
+// eight leave room in the first-level cache.
+constexpr std::uint32_t kRaysAtOnce = 8;
+// So many rays for each of a work-group's, that the last ones of an item, which fewer and fewer keep company, are few.
+constexpr std::uint32_t kRunsPerItem = 4;
+
 // The stack a traversal needs: every level leaves at most one node waiting. A few sizes only, so that trees
 // share compiled programs.
 std::uint32_t stack_size_for(std::uint32_t max_depth) {
@@ -36,6 +42,7 @@ std::string TracePlan::program_options() const {
   if (wide) {
     return "-DGN_WIDE_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
            " -DGN_RAYS_PER_ITEM=" + std::to_string(rays_per_item) +
+           " -DGN_RAYS_AT_ONCE=" + std::to_string(rays_at_once) +
            " -DGN_PORTABLE=" + (portable ? "1" : "0") + (fast ? " -DGN_FAST=1" : "");
   }
   return "-DGN_STACK_SIZE=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
@@ -90,7 +97,8 @@ TracePlan plan_wide_trace(const cl::DeviceInfo& device, const TraceOptions& opti
   // A node leaves at most seven of its children waiting; the last vector written there is eight long.
   plan.stack_size = (7 * depth + 8 + 63) / 64 * 64;
   plan.most_passes = 1;
-  plan.rays_per_item = plan.work_group_size;
+  plan.rays_per_item = kRunsPerItem * plan.work_group_size;
+  if (device.is_cpu && device.loop_limit == 0) plan.rays_at_once = std::min(kRaysAtOnce, plan.rays_per_item);
   plan.work_group_size = 1;
   plan.wide = true;
   plan.portable = options.portable;

@@ -18,20 +18,13 @@
 namespace {
 
 using nlohmann::json;
+using page::cell_of;
 using page::number;
 
 constexpr double kLoss = 1.02;  // more of the work of SAH's tree than this is set in bold
 
 std::string percent(double share) {
   return number(100.0 * share, std::fabs(share) < 0.0995 ? "%.1f %%" : "%.0f %%");
-}
-
-// A table's cell.
-std::string cell_of(const std::string& text) {
-  std::string out(" ");
-  out += text;
-  out += " |";
-  return out;
 }
 
 // As short as it is exact enough to read.

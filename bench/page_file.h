@@ -1,11 +1,13 @@
-// What makes a page from rows, or checks one: shared by failure_map_page and ray_aware_page.
+// What makes a page from rows, or checks one: shared by the programs that write pages of bench/results.
 #pragma once
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace page {
 
@@ -21,26 +23,59 @@ inline std::string number(double value, const char* format) {
   return text;
 }
 
-// The whole program PROGRAM ROWS.jsonl PAGE.md [--check]: writes what `text_of` makes of the rows' text, or,
-// for
-// --check, exits 1 where the page is another.
+inline double geomean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += std::log(value);
+  return std::exp(sum / static_cast<double>(values.size()));
+}
+
+// A table's cell, behind the bar that ends the one before it.
+inline std::string cell_of(const std::string& text) {
+  std::string out(" ");
+  out += text;
+  out += " |";
+  return out;
+}
+
+// A table's line, and its head, with a blank line above and the rule below.
+inline std::string line_of(const std::vector<std::string>& cells) {
+  std::string out("|");
+  for (const std::string& cell : cells) out += cell_of(cell);
+  return out + "\n";
+}
+
+inline std::string head_of(const std::vector<std::string>& cells) {
+  std::string rule("|");
+  for (std::size_t i = 0; i < cells.size(); ++i) rule += "---|";
+  std::string out("\n");
+  return out.append(line_of(cells)).append(rule).append("\n");
+}
+
+// The whole program PROGRAM ROWS.jsonl... PAGE.md [--check]: writes what `text_of` makes of all rows' text,
+// or, for --check, exits 1 where the page is another.
 template <typename TextOf>
 int run(int argc, char** argv, const char* program, TextOf text_of) {
-  if (argc < 3) {
-    std::fprintf(stderr, "usage: %s ROWS.jsonl PAGE.md [--check]\n", program);
+  std::vector<std::string> files(argv + 1, argv + argc);
+  const bool check = !files.empty() && files.back() == "--check";
+  if (check) files.pop_back();
+  if (files.size() < 2) {
+    std::fprintf(stderr, "usage: %s ROWS.jsonl... PAGE.md [--check]\n", program);
     return 2;
   }
+  const std::string page = files.back();
+  files.pop_back();
   try {
-    const std::string text = text_of(read(argv[1]));
-    if (argc > 3 && std::string(argv[3]) == "--check") {
-      if (read(argv[2]) == text) return 0;
-      std::fprintf(stderr, "%s is not what %s gives; run %s %s %s\n", argv[2], argv[1], program, argv[1],
-                   argv[2]);
+    std::string rows;
+    for (const std::string& file : files) rows += read(file);
+    const std::string text = text_of(rows);
+    if (check) {
+      if (read(page) == text) return 0;
+      std::fprintf(stderr, "%s is not what its rows give; bench/figures.sh writes it anew\n", page.c_str());
       return 1;
     }
-    std::ofstream out(argv[2], std::ios::binary);
+    std::ofstream out(page, std::ios::binary);
     out << text;
-    if (!out.flush()) throw std::runtime_error(std::string("cannot write ") + argv[2]);
+    if (!out.flush()) throw std::runtime_error("cannot write " + page);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", program, error.what());
     return 1;

@@ -17,6 +17,7 @@
 namespace {
 
 using nlohmann::json;
+using page::geomean;
 using page::number;
 
 constexpr double kEven = 0.005;  // ratios this near 1 are neither a win nor a loss
@@ -29,12 +30,6 @@ struct Case {
   [[nodiscard]] bool has(const std::string& tree) const { return trees.count(tree) > 0; }
   [[nodiscard]] double cost(const std::string& tree) const { return trees.at(tree).at("cost").get<double>(); }
 };
-
-double geomean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += std::log(value);
-  return std::exp(sum / static_cast<double>(values.size()));
-}
 
 std::string cell(const std::vector<double>& ratios) {
   if (ratios.empty()) return " – |";

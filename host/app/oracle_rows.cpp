@@ -32,6 +32,7 @@ void add_oracle(Json& row, const OracleReport& o) {
   row["any_closest_disagree"] = o.any_closest_disagree;
   row["ties"] = o.ties;
   row["range_ambiguous"] = o.range_ambiguous;
+  row["range_rounded"] = o.range_rounded;
   row["t_error_ulp"] = {{"p50", finite(o.t_errors.quantile(0.5))},
                         {"p99", finite(o.t_errors.quantile(0.99))},
                         {"max", finite(o.max_t_error_ulp)}};

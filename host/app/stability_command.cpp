@@ -9,6 +9,7 @@
 #include "document.h"
 #include "exit_status.h"
 #include "gnomon/base/stats.h"
+#include "gnomon/stability/cases.h"
 #include "interrupt.h"
 #include "numbers.h"
 #include "scene_source.h"
@@ -146,6 +147,7 @@ int run_soak(const Options& options, Console& console) {
   row["stopped"] = report.stopped;
   row["seconds"] = report.seconds;
   row.update(to_json(total, exact));
+  row["tolerance_ulp"] = exact ? Json(stability::kMostUlp) : Json(nullptr);  // else each hit has its own
   for (const char* key : {"scene", "scene_hash", "builder", "offset"})
     row.erase(key);  // each part has its own
   row["t_error_p99_of_parts"] = spread_of_p99(report);
@@ -153,7 +155,7 @@ int run_soak(const Options& options, Console& console) {
   for (const stability::SoakPart& part : report.parts) row["parts"].push_back(to_json(part, exact));
   if (report.stopped)
     console.note("stopped after " + std::to_string(total.rays) + " rays; these are what they gave");
-  const bool ok = total.faults(exact) == 0 && total.rays > 0;
+  const bool ok = total.ok(exact) && total.rays > 0;
   const int status = finish(options, console, context, {row}, ok, soak_table(report, exact) + "\n");
   return report.stopped && ok ? kInterrupted : status;
 }

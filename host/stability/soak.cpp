@@ -131,6 +131,11 @@ bool run_part(const Station& station, const SoakOptions& options, std::uint64_t 
 
 }  // namespace
 
+bool SoakPart::ok(bool exact) const {
+  const std::uint64_t wrong = exact ? oracle.mismatches() : oracle.lost + oracle.any_closest_disagree;
+  return wrong == 0 && invalid == 0 && flavours_differ == 0 && (!exact || oracle.max_t_error_ulp <= kMostUlp);
+}
+
 SoakPart SoakReport::total() const {
   SoakPart sum;
   for (const SoakPart& part : parts) {

@@ -144,6 +144,7 @@ void accept_closest(const Batch& batch, std::uint64_t index, const Findings& fin
   if (hit) measure(reported, exact_intersect(batch.rays[index], batch.triangles[reported.primitive]), report);
   if (findings.is_ambiguous()) {
     report.range_ambiguous += 1;
+    if (hit != findings.hit) report.range_rounded += 1;
   } else if (hit && reported.primitive != findings.safe_primitive) {
     report.ties += 1;
   }
@@ -159,7 +160,10 @@ void judge_ray(const Batch& batch, std::uint64_t index, const Findings& findings
     if (fault == nullptr) accept_closest(batch, index, findings, report);
   } else if (!batch.any.empty()) {
     fault = fault_of_any(batch.any[index] != 0, findings);
-    if (fault == nullptr && findings.has_doubtful() && !findings.has_safe()) report.range_ambiguous += 1;
+    if (fault == nullptr && findings.has_doubtful() && !findings.has_safe()) {
+      report.range_ambiguous += 1;
+      if ((batch.any[index] != 0) != findings.hit) report.range_rounded += 1;
+    }
   }
   if (fault != nullptr) report.*fault += 1;
   const bool disagree = !batch.hits.empty() && !batch.any.empty() &&

@@ -76,10 +76,11 @@ struct OracleReport {
   std::uint64_t wrong_primitive = 0;  // right t, but a triangle that is not there
   std::uint64_t ties = 0;             // right t, another triangle that is also there
   std::uint64_t any_closest_disagree = 0;
-  std::uint64_t range_ambiguous = 0;    // t within tolerance of tmin or tmax: either answer stands
-  double max_t_error_ulp = 0.0;         // over agreeing hits, in ulp of the exact t as float
-  ErrorCounts t_errors;                 // of the same hits
-  double max_uv_error = 0.0;            // over agreeing hits of the same triangle, absolute
+  std::uint64_t range_ambiguous = 0;  // t within tolerance of tmin or tmax: either answer stands
+  std::uint64_t range_rounded = 0;  // of these, rays that hit where the exact t misses, or miss where it hits
+  double max_t_error_ulp = 0.0;     // over agreeing hits, in ulp of the exact t as float
+  ErrorCounts t_errors;             // of the same hits
+  double max_uv_error = 0.0;        // over agreeing hits of the same triangle, absolute
   std::vector<std::uint64_t> bad_rays;  // indices of the first 16 at fault
   [[nodiscard]] std::uint64_t mismatches() const {
     return lost + false_hits + wrong_primitive + any_closest_disagree;

@@ -36,6 +36,7 @@ void OracleReport::add(const OracleReport& other) {
   ties += other.ties;
   any_closest_disagree += other.any_closest_disagree;
   range_ambiguous += other.range_ambiguous;
+  range_rounded += other.range_rounded;
   max_t_error_ulp = std::max(max_t_error_ulp, other.max_t_error_ulp);
   for (std::size_t i = 0; i < t_errors.steps.size(); ++i) t_errors.steps[i] += other.t_errors.steps[i];
   max_uv_error = std::max(max_uv_error, other.max_uv_error);

@@ -124,6 +124,11 @@ TEST_CASE("a long run gives one row that says all about it, appended to a file")
   CHECK(row.at("lost") == 0);
   CHECK(row.at("false_hits") == 0);
   CHECK(row.at("flavours_differ") == 0);
+  CHECK(row.at("range_rounded") == 0);
+  if (row.at("fp64") == true) {
+    CHECK(row.at("tolerance_ulp") == 0.5625);
+    CHECK(row.at("t_error_ulp").at("max") <= row.at("tolerance_ulp"));
+  }
   const json flavours = row.at("options").at("flavours");
   CHECK((flavours.size() == 6 ||
          flavours == json::array({"thread"})));  // packets among them where there are any

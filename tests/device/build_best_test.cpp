@@ -54,6 +54,13 @@ TEST_CASE("both flavours divide the same triangles", "[portable][best]") {
   REQUIRE(tree.triangle_count > triangles.size());
 }
 
+TEST_CASE("corners in the planes that divide their triangles are in the device's parts", "[best]") {
+  const Triangles triangles = gnomon::test::corners_in_planes(1500, 100, 233);
+  require_same(triangles, best(16, 100));
+  const auto tree = gnomon::build_device(context(), triangles, best(0));
+  REQUIRE(tree.triangle_count > triangles.size());
+}
+
 // Few triangles: the simulator that watches every access takes its time.
 TEST_CASE("small best trees in both flavours keep to their buffers", "[memcheck][best]") {
   const Triangles triangles = with_large_ones(60, 110, 232);

@@ -136,6 +136,31 @@ TEST_CASE("a long run gives the same whatever its chunks and threads") {
   REQUIRE(whole.exactly > 500);
 }
 
+TEST_CASE("a long run's part is right only with every ray right, and t within its bound") {
+  SoakPart part;
+  part.oracle.max_t_error_ulp = kMostUlp;
+  REQUIRE(part.ok(true));
+  part.oracle.max_t_error_ulp = 0.57;
+  REQUIRE_FALSE(part.ok(true));
+  REQUIRE(part.ok(false));  // there each hit has its own
+  part = {};
+  part.oracle.false_hits = 1;
+  REQUIRE_FALSE(part.ok(true));
+  REQUIRE(part.ok(false));
+  for (const auto count : {&OracleReport::lost, &OracleReport::any_closest_disagree}) {
+    part = {};
+    part.oracle.*count = 1;
+    REQUIRE_FALSE(part.ok(true));
+    REQUIRE_FALSE(part.ok(false));
+  }
+  for (const auto count : {&SoakPart::invalid, &SoakPart::flavours_differ}) {
+    part = {};
+    part.*count = 1;
+    REQUIRE_FALSE(part.ok(true));
+    REQUIRE_FALSE(part.ok(false));
+  }
+}
+
 TEST_CASE("a long run stops where it is told, and refuses to be none") {
   SoakOptions options;
   options.rays = 1000000;

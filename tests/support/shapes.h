@@ -121,6 +121,22 @@ inline std::vector<std::pair<std::string, std::vector<GnTriangle>>> awkward_inpu
   return out;
 }
 
+// Small triangles in a cube of side 16, and large ones whose corners are on its lattice: many of these lie
+// exactly in the planes that halve the cube again and again, along which the best builder divides.
+inline std::vector<GnTriangle> corners_in_planes(std::uint32_t small, std::uint32_t large,
+                                                 std::uint32_t seed) {
+  std::vector<GnTriangle> out = soup(small, seed, 0.1F, 1.0F);
+  Random random(seed + 1);
+  const auto place = [&] {
+    std::array<float, 3> at{};
+    for (float& x : at) x = static_cast<float>(2 * random.below(9));
+    return at;
+  };
+  out.push_back(triangle({0, 0, 0}, {16, 16, 16}, {16, 0, 16}));
+  for (std::uint32_t i = 0; i < large; ++i) out.push_back(triangle(place(), place(), place()));
+  return out;
+}
+
 inline GnRay ray(std::array<float, 3> origin, std::array<float, 3> direction, float tmin = 0.0F,
                  float tmax = std::numeric_limits<float>::infinity()) {
   GnRay r{};

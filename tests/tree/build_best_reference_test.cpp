@@ -72,6 +72,21 @@ TEST_CASE("the reference's best trees give the oracle's hits") {
   REQUIRE(found > 100);
 }
 
+TEST_CASE("rays to corners in the planes that divide their triangles hit what the oracle hits") {
+  const Triangles triangles = gnomon::test::corners_in_planes(1500, 100, 315);
+  const Bvh bvh = require_sound(triangles, best());
+  REQUIRE(bvh.primitives.size() > triangles.size());
+  for (std::size_t i = 1500; i < triangles.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const GnRay ray = gnomon::test::aimed({-31, 47, 101}, gnomon::test::corner(triangles[i], c));
+      CAPTURE(i, c);
+      const auto expected = gnomon::oracle_closest(ray, triangles);
+      const auto hit = gnomon::trace_reference(bvh, triangles, std::vector<GnRay>{ray}, false).hits.front();
+      REQUIRE(hit.primitive == expected.primitive);
+    }
+  }
+}
+
 TEST_CASE("best trees keep to the depth that checks demand") {
   Triangles triangles;
   for (int i = 0; i < 64; ++i) {

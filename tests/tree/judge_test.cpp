@@ -117,6 +117,8 @@ TEST_CASE("a hit within the tolerance of tmin or tmax may be seen or not") {
     CHECK(counts(judge_one(only_first, hit_at(3, 0))) == kAmbiguous);
     CHECK(counts(judge_one(only_first, kMiss)) == kAmbiguous);
     CHECK(judge_one(only_first, kMiss).hits == (off >= 0 ? 1 : 0));
+    CHECK(judge_one(only_first, kMiss).range_rounded == (off >= 0 ? 1 : 0));
+    CHECK(judge_one(only_first, hit_at(3, 0)).range_rounded == (off >= 0 ? 0 : 1));
     const Ray only_last = ahead(ulps_away(9, off));
     CHECK(counts(judge_one(only_last, hit_at(9, 2))) == kAmbiguous);
     CHECK(counts(judge_one(only_last, kMiss)) == kAmbiguous);
@@ -162,7 +164,10 @@ TEST_CASE("any-hit answers alone are held against the oracle") {
   CHECK(counts(judge_any(ahead(), 0)) == kLost);
   CHECK(counts(judge_any(ahead(10), 0)) == kClean);
   CHECK(counts(judge_any(ahead(10), 1)) == kFalse);
-  for (const std::uint32_t answer : {0U, 1U}) CHECK(counts(judge_any(ahead(0, 3), answer)) == kAmbiguous);
+  for (const std::uint32_t answer : {0U, 1U}) {
+    CHECK(counts(judge_any(ahead(0, 3), answer)) == kAmbiguous);
+    CHECK(judge_any(ahead(0, 3), answer).range_rounded == 1 - answer);
+  }
   CHECK(counts(judge_any(ahead(3), 0)) == kLost);
   CHECK(counts(judge_any(ahead(3), 1)) == kClean);
 }

@@ -164,6 +164,74 @@ TEST_CASE("where an edge passes a plane is bounded for certain") {
   }
 }
 
+TEST_CASE("a corner exactly in a plane belongs to both of its sides") {
+  using Place = std::array<float, 3>;
+  const Place low{0, 0, 0};
+  const Place high{4, 0, 1};
+  const Place within{2, 4, 7};
+  const Place beside{2, 1, 5};
+  struct Cut {
+    std::array<Place, 3> corners;
+    bool has_left, has_right;
+    Place left_lo, left_hi, right_lo,
+        right_hi;  // boxes that the sides' must hold, along the plane's axis theirs
+  };
+  const std::vector<Cut> cuts{
+      {{low, high, within}, true, true, {0, 0, 0}, {2, 4, 7}, {2, 0, 0.5F}, {4, 4, 7}},
+      {{low, within, beside}, true, true, {0, 0, 0}, {2, 4, 7}, {2, 1, 5}, {2, 4, 7}},  // an edge in the
+                                                                                        // plane
+      {{high, within, beside}, true, true, {2, 1, 5}, {2, 4, 7}, {2, 0, 1}, {4, 4, 7}},
+      {{low, {1, 3, 3}, within}, true, true, {0, 0, 0}, {2, 4, 7}, {2, 4, 7}, {2, 4, 7}},  // touched by one
+                                                                                           // corner
+      {{within, beside, {2, 9, 2}}, true, true, {2, 1, 2}, {2, 9, 7}, {2, 1, 2}, {2, 9, 7}}};  // all in the
+                                                                                               // plane
+  for (std::size_t c = 0; c < cuts.size(); ++c) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (std::size_t first = 0; first < 3; ++first) {
+        CAPTURE(c, axis, first);
+        const Cut& cut = cuts[c];
+        GnCut t{};
+        for (std::size_t i = 0; i < 3; ++i) {
+          for (int k = 0; k < 3; ++k) t.corner[(first + i) % 3][(k + axis) % 3] = cut.corners[i][k];
+        }
+        GnPart left;
+        GnPart right;
+        gn_cut_triangle(&t, axis, 2.0F, &left, &right);
+        for (int k = 0; k < 3; ++k) {
+          const int at = (k + axis) % 3;
+          CAPTURE(k);
+          REQUIRE(left.lo[at] <= cut.left_lo[k]);
+          REQUIRE(left.hi[at] >= cut.left_hi[k]);
+          REQUIRE(right.lo[at] <= cut.right_lo[k]);
+          REQUIRE(right.hi[at] >= cut.right_hi[k]);
+        }
+        REQUIRE(left.hi[axis] == 2.0F);
+        REQUIRE(right.lo[axis] == 2.0F);
+        REQUIRE(left.lo[axis] == cut.left_lo[0]);
+        REQUIRE(right.hi[axis] == cut.right_hi[0]);
+      }
+    }
+  }
+}
+
+TEST_CASE("parts hold triangles whose corners lie exactly in the planes that divide them") {
+  const Triangles triangles = gnomon::test::corners_in_planes(2000, 200, 307);
+  const auto parts = gnomon::parts_of(triangles, 5.0F);
+  require_covered(triangles, parts);
+  std::size_t at_corners =
+      0;  // parts that end in a plane with a corner of the triangle, which reaches beyond
+  for (const GnPrimitive& part : parts) {
+    const GnTriangle& t = triangles[part.index];
+    const GnPrimitive whole = gnomon::primitive_of(t, part.index);
+    for (int k = 0; k < 3; ++k) {
+      const bool ends = part.hi[k] < whole.hi[k];
+      const auto in_plane = [&](const float* v) { return v[k] == part.hi[k]; };
+      if (ends && (in_plane(t.v0) || in_plane(t.v1) || in_plane(t.v2))) at_corners += 1;
+    }
+  }
+  REQUIRE(at_corners > 100);
+}
+
 TEST_CASE("covers are told from gaps") {
   const GnTriangle t = gnomon::test::triangle({0, 0, 0}, {4, 0, 1}, {0, 4, 1});
   const GnNode left{{0, 0, 0}, 0, {2, 4, 1}, 1};

@@ -1,5 +1,6 @@
 // One work-group builds one small subtree, depth first, going back and forth between the two primitive buffers.
 // Every statement between barriers is met by all work-items: steps that do not apply run over empty ranges.
+#include "few.h"
 #include "partition.h"
 
 // The smaller child is built first and the larger waits, so the stack holds at most log2(2^20) + 1 tasks.

@@ -4,7 +4,6 @@
 #define GNOMON_BIN_H
 
 #include "group.h"
-#include "sweep.h"
 #include "shared/axis_policy.h"
 
 // 1: the heuristic's own axis policy orders axes (axis_policy.h). 0: all three are tried, and policies are left out.
@@ -17,7 +16,18 @@
 #ifndef GN_PUBLISHED_BINS
 #define GN_PUBLISHED_BINS 0
 #endif
-#define GN_PLANES (GN_BINS - 1u - GN_PUBLISHED_BINS)
+#define GN_PLANES_BETWEEN(bin_count) ((bin_count)-1u - GN_PUBLISHED_BINS)
+
+#include "sweep.h"
+
+// A serial group bins many primitives into two sets by turns, the second behind the first, so that one need not wait until
+// the other is in the bin that both are in.
+#if GN_WGS == 1
+#define GN_BIN_SETS 2
+#else
+#define GN_BIN_SETS 1
+#endif
+#define GN_MANY 64u
 
 // How doubled centroids of a node (published: tripled barycentres) map to bins.
 typedef struct GnBinning {
@@ -41,7 +51,7 @@ static inline GnBinning binning_of(const GnTask* task, __global const float* tri
 }
 
 static inline uint3 bins_of(float8 primitive, GnBinning binning) {
-  const size_t corner = 3u * (size_t)as_uint(primitive.s3);
+  const size_t corner = 3u * (size_t)index_in(primitive.s3);
   const float3 sum = vload3(corner, binning.triangles) + vload3(corner + 1u, binning.triangles) +
                      vload3(corner + 2u, binning.triangles);
   const float3 place = (sum - binning.base.xyz) * binning.scale.xyz;
@@ -59,9 +69,12 @@ static inline GnBinning binning_of(const GnTask* task, __global const float* tri
 
 // gn_bin_of on three axes at once. Four lanes and signed: one instruction; places are below 2^31, and the fourth lane is
 // nobody's.
-static inline uint3 bins_of(float8 primitive, GnBinning binning) {
+static inline int4 places_of(float8 primitive, GnBinning binning) {
   const float4 place = ((primitive.lo + primitive.hi) - binning.base) * binning.scale;
-  return as_uint4(min(convert_int4(place), (int4)(GN_BINS - 1))).xyz;
+  return min(convert_int4(place), (int4)(GN_BINS - 1));
+}
+static inline uint3 bins_of(float8 primitive, GnBinning binning) {
+  return as_uint4(places_of(primitive, binning)).xyz;
 }
 #endif
 
@@ -123,22 +136,52 @@ static inline void add_to_bin(__local GnBin* bin, __local uint* count, float8 pr
 }
 #endif
 
-// Bins [begin, end) on all three axes into bins and counts (3 * GN_BINS each, axis after axis).
+static inline void add_on_three_axes(__local GnBin* bins, __local uint* counts, uint3 place, float8 box) {
+  add_to_bin(bins + place.x, counts + place.x, box);
+  add_to_bin(bins + GN_BINS + place.y, counts + GN_BINS + place.y, box);
+  add_to_bin(bins + 2u * GN_BINS + place.z, counts + 2u * GN_BINS + place.z, box);
+}
+
+#if GN_WGS == 1
+// Bins an even number of primitives from `begin` on and returns where it stopped: `end` or the last one.
+static inline uint bin_by_turns(__global const float8* primitives, uint begin, uint end, GnBinning binning,
+                                __local GnBin* bins, __local uint* counts) {
+  __local GnBin* other_bins = bins + 3u * GN_BINS;
+  __local uint* other_counts = counts + 3u * GN_BINS;
+  uint i;
+  clear_bins(other_bins, other_counts);
+  for (i = begin; end - i >= 2u; i += 2u) {
+    const float8 first = primitives[i], second = primitives[i + 1u];
+    const uint3 at = bins_of(first, binning), other_at = bins_of(second, binning);
+    add_on_three_axes(bins, counts, at, with_upper_negated(first));
+    add_on_three_axes(other_bins, other_counts, other_at, with_upper_negated(second));
+  }
+  begin = i;
+  for (i = 0u; i < 3u * GN_BINS; ++i) {
+    __local float8* whole = (__local float8*)(bins + i);
+    *whole = GN_VMIN(*(__local const float8*)(other_bins + i), *whole);
+    counts[i] += other_counts[i];
+  }
+  return begin;
+}
+#endif
+
+// Bins [begin, end) on all three axes into bins and counts (3 * GN_BINS each, axis after axis, GN_BIN_SETS times).
 static inline void bin_range(__global const float8* primitives, uint begin, uint end, GnBinning binning,
                              __local GnBin* bins, __local uint* counts) {
   uint i;
   clear_bins(bins, counts);
+#if GN_WGS == 1
+  if (end - begin >= GN_MANY) begin = bin_by_turns(primitives, begin, end, binning, bins, counts);
+#endif
   for (i = begin + GN_LOCAL_ID; i < end; i += GN_WGS) {
     const float8 primitive = primitives[i];
-    const uint3 place = bins_of(primitive, binning);
 #if GN_WGS == 1
     const float8 box = with_upper_negated(primitive);
 #else
     const float8 box = primitive;
 #endif
-    add_to_bin(bins + place.x, counts + place.x, box);
-    add_to_bin(bins + GN_BINS + place.y, counts + GN_BINS + place.y, box);
-    add_to_bin(bins + 2u * GN_BINS + place.z, counts + 2u * GN_BINS + place.z, box);
+    add_on_three_axes(bins, counts, bins_of(primitive, binning), box);
   }
   GN_GROUP_BARRIER();
 #if GN_WGS != 1
@@ -149,6 +192,41 @@ static inline void bin_range(__global const float8* primitives, uint begin, uint
   GN_GROUP_BARRIER();
 #endif
 }
+
+// A node of few primitives has no use for bins that are empty: a serial group numbers only as many as there are primitives,
+// which leaves the order of those that hold any, and so the split, as they were.
+#if GN_WGS == 1 && GN_BINS > 8 && !GN_PUBLISHED_BINS && !GN_ORDERED_AXES
+#define GN_FEW 8u
+// Bins `count` primitives, at most GN_FEW, into the first `count` bins of each axis. bin_at: receives which of the GN_BINS
+// bins that is, axis after axis, for those that hold any.
+static inline void bin_few(__global const float8* primitives, uint count, GnBinning binning, __local GnBin* bins,
+                           __local uint* counts, uint* bin_at) {
+  int4 place[GN_FEW], rank[GN_FEW];
+  uint i, k;
+  for (i = 0u; i < count; ++i) {
+    const float8 primitive = primitives[i];
+    place[i] = places_of(primitive, binning);
+    rank[i] = (int4)(0);
+    for (k = 0u; k < i; ++k) {
+      rank[i] -= place[k] < place[i];  // true is -1
+      rank[k] -= place[i] < place[k];
+    }
+    for (k = 0u; k < 3u; ++k) {
+      *(__local float8*)(bins + k * GN_BINS + i) = (float8)(INFINITY);
+      counts[k * GN_BINS + i] = 0u;
+    }
+  }
+  for (i = 0u; i < count; ++i) {
+    const uint3 at = as_uint4(rank[i]).xyz;
+    add_on_three_axes(bins, counts, at, with_upper_negated(primitives[i]));
+    bin_at[at.x] = (uint)place[i].x;
+    bin_at[GN_FEW + at.y] = (uint)place[i].y;
+    bin_at[2u * GN_FEW + at.z] = (uint)place[i].z;
+  }
+}
+#else
+#define GN_FEW 0u
+#endif
 
 // A task as axis policies see it. An axis without extent cannot be divided.
 static inline GnNodeView view_of(const GnTask* task, GnBinning binning) {
@@ -168,13 +246,13 @@ static inline GnNodeView view_of(const GnTask* task, GnBinning binning) {
 
 // Every axis' cheapest split, each swept by a work-item of its own where there are several.
 static inline void sweep_axes(const GnHeuristic* heuristic, int how, const GnNodeView* node, __local const GnBin* bins,
-                              __local const uint* counts, __local GnSplit* best_of_axis) {
+                              __local const uint* counts, uint bin_count, __local GnSplit* best_of_axis) {
   uint axis;
   for (axis = GN_LOCAL_ID; axis < 3u; axis += GN_WGS) {
     GnSplit split = gn_no_split();
     if ((node->usable >> axis & 1u) != 0u) {
-      split = gn_sweep_axis(&heuristic->measure, how, bins + axis * GN_BINS, counts + axis * GN_BINS, GN_PLANES,
-                            GN_BINS, axis, node->count);
+      split = gn_sweep_axis(&heuristic->measure, how, bins + axis * GN_BINS, counts + axis * GN_BINS,
+                            GN_PLANES_BETWEEN(bin_count), bin_count, axis, node->count);
     }
     best_of_axis[axis] = split;
   }
@@ -183,7 +261,8 @@ static inline void sweep_axes(const GnHeuristic* heuristic, int how, const GnNod
 
 // The cheapest split of all three axes.
 static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, const GnNodeView* node,
-                                     __local GnBin* bins, __local const uint* counts, __local GnSplit* best_of_axis) {
+                                     __local GnBin* bins, __local const uint* counts, uint bin_count,
+                                     __local GnSplit* best_of_axis) {
   GnSplit best;
   uint axis;
 #if GN_WGS == 1
@@ -191,18 +270,18 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
   const int steps = gn_has_steps(measure);
   float w[3];
   if (gn_linear_part(measure, how, w)) {
-    sweep_three_axes(measure, GN_SEEN_NOTHING, w, bins, counts, GN_PLANES, node->count, best_of_axis);
+    sweep_three_axes(measure, GN_SEEN_NOTHING, w, bins, counts, bin_count, node->count, best_of_axis);
   } else if (steps && how == GN_SEEN_ONE_STEP) {
-    sweep_three_axes(measure, GN_SEEN_ONE_STEP, w, bins, counts, GN_PLANES, node->count, best_of_axis);
+    sweep_three_axes(measure, GN_SEEN_ONE_STEP, w, bins, counts, bin_count, node->count, best_of_axis);
   } else if (steps && how == GN_SEEN_FEW_STEPS) {
-    sweep_three_axes(measure, GN_SEEN_FEW_STEPS, w, bins, counts, GN_PLANES, node->count, best_of_axis);
+    sweep_three_axes(measure, GN_SEEN_FEW_STEPS, w, bins, counts, bin_count, node->count, best_of_axis);
   } else {
     turn_bins(bins);
-    sweep_axes(heuristic, how, node, bins, counts, best_of_axis);
+    sweep_axes(heuristic, how, node, bins, counts, bin_count, best_of_axis);
     turn_bins(bins);
   }
 #else
-  sweep_axes(heuristic, how, node, bins, counts, best_of_axis);
+  sweep_axes(heuristic, how, node, bins, counts, bin_count, best_of_axis);
 #endif
   best = best_of_axis[0];
   for (axis = 1u; axis < 3u; ++axis) {
@@ -212,16 +291,17 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
   return best;
 }
 
-// The split the heuristic chooses; every work-item receives it.
+// The split the heuristic chooses, between the first bin_count bins of each axis (GN_BINS unless bin_few was here); every
+// work-item receives it.
 static inline GnSplit choose_split(const GnHeuristic* heuristic, int how, const GnNodeView* node,
-                                   __local GnBin* bins, __local const uint* counts,
+                                   __local GnBin* bins, __local const uint* counts, uint bin_count,
                                    __local GnSplit* best_of_axis) {
 #if !GN_ORDERED_AXES
-  return cheapest_split(heuristic, how, node, bins, counts, best_of_axis);
+  return cheapest_split(heuristic, how, node, bins, counts, bin_count, best_of_axis);
 #else
   turn_bins(bins);
   if (GN_LOCAL_ID == 0u) {
-    best_of_axis[0] = gn_policy_split(heuristic, how, node, bins, counts, GN_PLANES, GN_BINS, 0);
+    best_of_axis[0] = gn_policy_split(heuristic, how, node, bins, counts, GN_PLANES_BETWEEN(bin_count), bin_count, 0);
   }
   turn_bins(bins);
   GN_GROUP_BARRIER();

@@ -26,6 +26,12 @@
 #define GN_VMIN(a, b) ((a) < (b) ? (a) : (b))
 #define GN_VMAX(a, b) ((a) > (b) ? (a) : (b))
 
+// A triangle's number in a float's place, behind a corner. With this bit turned it is a normal number: additions that
+// meet it in a lane nobody reads would take several times as long over a denormal one, which small numbers are.
+#define GN_INDEX_BIT 0x40000000u
+static inline float float_with_index(uint index) { return as_float(index ^ GN_INDEX_BIT); }
+static inline uint index_in(float lane) { return as_uint(lane) ^ GN_INDEX_BIT; }
+
 // A box as two vectors; lane w carries nothing.
 typedef struct GnBoxPair {
   float4 lo;

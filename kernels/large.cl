@@ -6,8 +6,8 @@
 __kernel void bin_chunks(__global const float8* primitives0, __global const float8* primitives1,
                          __global const float* triangles, __global const GnTask* tasks,
                          __global const GnChunk* chunks, __global GnBin* chunk_bins, __global uint* chunk_counts) {
-  __local GnBin bins[3 * GN_BINS] __attribute__((aligned(32)));
-  __local uint counts[3 * GN_BINS];
+  __local GnBin bins[GN_BIN_SETS * 3 * GN_BINS] __attribute__((aligned(32)));
+  __local uint counts[GN_BIN_SETS * 3 * GN_BINS];
   const uint group = (uint)get_group_id(0);
   const GnChunk chunk = chunks[group];
   const GnTask task = tasks[chunk.task];
@@ -58,8 +58,8 @@ __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __gl
                           __global const GnBin* chunk_bins, __global const uint* chunk_counts,
                           __global GnChildren* children, __global const GnHeuristic* heuristic_in,
                           __global const float* triangles) {
-  __local GnBin bins[3 * GN_BINS] __attribute__((aligned(32)));
-  __local uint counts[3 * GN_BINS];
+  __local GnBin bins[GN_BIN_SETS * 3 * GN_BINS] __attribute__((aligned(32)));
+  __local uint counts[GN_BIN_SETS * 3 * GN_BINS];
   __local GnSplit best_of_axis[3];
   const uint group = (uint)get_group_id(0);
   const uint from = first_chunk[group], to = first_chunk[group + 1u];
@@ -71,7 +71,7 @@ __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __gl
   merge_chunks(chunk_bins, chunk_counts, from, to, bins, counts);
   turn_bins(bins);
   split = choose_split(&heuristic, gn_measure_how(&heuristic.measure, task.lo, task.hi), &node, bins, counts,
-                       best_of_axis);
+                       GN_BINS, best_of_axis);
   if (GN_LOCAL_ID == 0u) {
     const int halve = split.axis == GN_NONE || task.depth >= heuristic.rules.median_depth;
     uint chunk, left_at, right_at;

@@ -27,6 +27,39 @@ static inline uint goes_left(float8 primitive, uint index, GnSide side) {
   return in_first_bins(primitive, side.binning, side.axis, side.plane);
 }
 
+#if GN_WGS == 1
+// The same as a comparison, less or not, of numbers that a whole vector can have: a mask made of a scalar's comparison costs
+// more than all the rest.
+typedef struct GnComparison {
+  float base;
+  float scale;
+  float bound;
+  uint axis;
+} GnComparison;
+
+static inline GnComparison comparison_of(GnSide side) {
+  const float base[3] = {side.binning.base.x, side.binning.base.y, side.binning.base.z};
+  const float scale[3] = {side.binning.scale.x, side.binning.scale.y, side.binning.scale.z};
+  GnComparison out;
+  out.axis = side.axis == GN_NONE ? 0u : side.axis;
+  out.base = base[out.axis];
+  out.scale = scale[out.axis];
+  out.bound = side.axis == GN_NONE ? 0.0f : (float)(side.plane + 1u);
+  return out;
+}
+
+// Below comparison.bound where the primitive goes left.
+static inline float compared_place(__global const float8* primitive, uint index, GnSide side, GnComparison comparison) {
+#if GN_PUBLISHED_BINS
+  return goes_left(*primitive, index, side) ? comparison.bound - 1.0f : comparison.bound;
+#else
+  __global const float* row = (__global const float*)primitive + comparison.axis;
+  if (side.axis == GN_NONE) return index < side.middle ? -1.0f : 1.0f;
+  return ((row[0] + row[4]) - comparison.base) * comparison.scale;
+#endif
+}
+#endif
+
 // Bounds of doubled centroids of the two sides.
 typedef struct GnTwoBounds {
   GnBoxPair left;
@@ -70,10 +103,12 @@ static inline GnTwoBounds partition_range(__global const float8* from, __global 
 #if GN_WGS == 1
   // Doubled centroids and their negatives side by side: one minimum grows a side's bounds.
   float8 left_bounds = (float8)(INFINITY), right_bounds = (float8)(INFINITY);
+  const GnComparison comparison = comparison_of(side);
   for (i = begin; i < end; ++i) {
     const float8 primitive = from[i];
-    const uint left = goes_left(primitive, i, side);
-    const int8 is_left = (int8)(0 - (int)left);
+    const float place = compared_place(from + i, i, side, comparison);
+    const uint left = place < comparison.bound ? 1u : 0u;
+    const int8 is_left = (float8)(place) < (float8)(comparison.bound);
     const float8 both = with_upper_negated(primitive + primitive.s45670123);
     to[left ? left_at : right_at] = primitive;
     left_at += left;

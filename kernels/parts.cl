@@ -24,7 +24,7 @@ static inline void load_part(__global const float8* primitives, uint i, GnPart* 
 
 static inline void store_part(__global float8* primitives, uint i, const GnPart* part, uint triangle) {
   __global float* out = (__global float*)(primitives + i);
-  vstore4((float4)(part->lo[0], part->lo[1], part->lo[2], as_float(triangle)), 0, out);
+  vstore4((float4)(part->lo[0], part->lo[1], part->lo[2], float_with_index(triangle)), 0, out);
   vstore4((float4)(part->hi[0], part->hi[1], part->hi[2], 0.0f), 1, out);
 }
 

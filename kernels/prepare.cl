@@ -19,7 +19,7 @@ __kernel void prepare_primitives(__global const float* triangles, __global float
     const float3 c = vload3(3u * (size_t)i + 2u, triangles);
     const GnBoxPair box = box_of_corners(a, b, c);
     const float4 hi4 = box.hi;
-    const float4 lo4 = (float4)(box.lo.xyz, as_float(i));
+    const float4 lo4 = (float4)(box.lo.xyz, float_with_index(i));
     if (!is_traceable(a) || !is_traceable(b) || !is_traceable(c)) atomic_min(first_bad, i);
     // In two halves: oclgrind 21.10 does not survive a vector of eight made of two.
     vstore4(lo4, 0, (__global float*)(primitives + i));

@@ -49,8 +49,8 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
                              __global const GnTask* roots, __global GnNode* nodes, __global uint* inner_rank,
                              __global uint* order, volatile __global uint* outcome,
                              __global const GnHeuristic* heuristic_in, __global const float* triangles) {
-  __local GnBin bins[3 * GN_BINS] __attribute__((aligned(32)));
-  __local uint counts[3 * GN_BINS];
+  __local GnBin bins[GN_BIN_SETS * 3 * GN_BINS] __attribute__((aligned(32)));
+  __local uint counts[GN_BIN_SETS * 3 * GN_BINS];
   __local GnSplit best_of_axis[3];
   __local GnTask stack[GN_SUBTREE_STACK];
   __local uint scan[GN_WGS];
@@ -79,17 +79,29 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
 
     // Bin and choose; single triangles and nodes past median_depth need no bins.
     const uint binned_end = count > 1u && task.depth < heuristic.rules.median_depth ? task.end : task.begin;
+    uint bin_count = GN_BINS;
+#if GN_FEW > 0
+    uint bin_at[3 * GN_FEW];
+    if (count <= GN_FEW && binned_end > task.begin) {
+      bin_few(from + task.begin, count, binning, bins, counts, bin_at);
+      bin_count = count;
+      split = choose_split(&heuristic, how, &node, bins, counts, bin_count, best_of_axis);
+    } else
+#endif
 #if GN_WGS == 1
     if (binned_end > task.begin) {
       bin_range(from, task.begin, binned_end, binning, bins, counts);
-      split = choose_split(&heuristic, how, &node, bins, counts, best_of_axis);
+      split = choose_split(&heuristic, how, &node, bins, counts, bin_count, best_of_axis);
     }
 #else
     bin_range(from, task.begin, binned_end, binning, bins, counts);
-    split = choose_split(&heuristic, how, &node, bins, counts, best_of_axis);
+    split = choose_split(&heuristic, how, &node, bins, counts, bin_count, best_of_axis);
     if (binned_end == task.begin) split = gn_no_split();
 #endif
     decide(&task, &heuristic, how, &node, &split);
+#if GN_FEW > 0
+    if (bin_count != GN_BINS && split.axis != GN_NONE) task.plane = bin_at[split.axis * GN_FEW + split.plane];
+#endif
     const uint is_leaf = task.left_count == 0u ? 1u : 0u;
     const uint middle = task.begin + task.left_count;
     const uint halved = !is_leaf && task.axis == GN_NONE ? 1u : 0u;
@@ -97,7 +109,7 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
     // Leaf: give out the order. Inner: partition.
     uint i;
     for (i = task.begin + GN_LOCAL_ID; i < (is_leaf ? task.end : task.begin); i += GN_WGS) {
-      order[i] = as_uint(from[i].s3);
+      order[i] = index_in(from[i].s3);
     }
     const GnTwoBounds sides = partition_range(from, to, task.begin, is_leaf ? task.begin : task.end, task.begin,
                                               middle, side_of(&task, binning), scan, keys);
@@ -115,8 +127,8 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
         __local GnTask* right_task = stack + (left_waits ? height : height - 1u);
         if (!halved) {
           __local const GnBin* axis_bins = bins + task.axis * GN_BINS;
-          left = box_of_bins(axis_bins, 0u, task.plane + 1u);
-          right = box_of_bins(axis_bins, task.plane + 1u, GN_BINS);
+          left = box_of_bins(axis_bins, 0u, split.plane + 1u);
+          right = box_of_bins(axis_bins, split.plane + 1u, bin_count);
         }
         set_task_bounds(left_task, left, sides.left);
         left_task->begin = task.begin;

@@ -55,9 +55,10 @@ static inline float4 measures_of(const GnMeasure* measure, const int how, const 
 
 // The cheapest split of every axis, to best_of_axis; axis == GN_NONE where there is none: on an axis without extent all
 // are in the first bin, and no plane divides them. how: GN_SEEN_NOTHING where the face weights w measure all, else
-// GN_SEEN_ONE_STEP or GN_SEEN_FEW_STEPS. w: as gn_linear_part gives it. Steps are not taken for bins that are empty on all axes, as small nodes' are.
+// GN_SEEN_ONE_STEP or GN_SEEN_FEW_STEPS. w: as gn_linear_part gives it. bin_count: at most GN_BINS. Steps are not taken for
+// bins that are empty on all axes, as small nodes' are.
 static inline void sweep_three_axes(const GnMeasure* measure, const int how, const float* w, __local const GnBin* bins,
-                                    __local const uint* counts, uint plane_count, uint count,
+                                    __local const uint* counts, uint bin_count, uint count,
                                     __local GnSplit* best_of_axis) {
   float4 right_cost[GN_BINS], right_measure[GN_BINS], right_tie[GN_BINS];
   float4 measured = (float4)(0.0f), costs_right = (float4)(0.0f), ties_right = (float4)(0.0f);
@@ -65,7 +66,7 @@ static inline void sweep_three_axes(const GnMeasure* measure, const int how, con
   float8 x = (float8)(INFINITY), y = x, z = x;
   int4 seen = (int4)(0);
   uint i, axis;
-  for (i = GN_BINS - 1u; i > 0u; --i) {
+  for (i = bin_count - 1u; i > 0u; --i) {
     const int4 here = counts_at(counts, i);
     if (how == GN_SEEN_NOTHING || (here.x | here.y | here.z) != 0) {
       x = GN_VMIN(GN_BIN_AT(bins, 0u, i), x);
@@ -87,7 +88,7 @@ static inline void sweep_three_axes(const GnMeasure* measure, const int how, con
   y = x;
   z = x;
   seen = (int4)(0);
-  for (i = 0u; i < plane_count; ++i) {
+  for (i = 0u; i < GN_PLANES_BETWEEN(bin_count); ++i) {
     const int4 here = counts_at(counts, i);
     if (how != GN_SEEN_NOTHING && (here.x | here.y | here.z) == 0) continue;
     x = GN_VMIN(GN_BIN_AT(bins, 0u, i), x);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "gnomon/compare/answer_counts.h"
+
 namespace gnomon::app {
 
 namespace {
@@ -25,11 +27,7 @@ Json distribution(const ErrorCounts& errors) {
 
 void add_oracle(Json& row, const OracleReport& o) {
   row["rays"] = o.rays_judged;
-  row["hits"] = o.hits;
-  row["lost"] = o.lost;
-  row["false_hits"] = o.false_hits;
-  row["wrong_primitive"] = o.wrong_primitive;
-  row["any_closest_disagree"] = o.any_closest_disagree;
+  put_answer_counts(row, o);
   row["ties"] = o.ties;
   row["range_ambiguous"] = o.range_ambiguous;
   row["range_rounded"] = o.range_rounded;

@@ -5,6 +5,7 @@
 
 #include "gnomon/base/error.h"
 #include "gnomon/base/stats.h"
+#include "gnomon/compare/answer_counts.h"
 
 namespace gnomon::compare {
 namespace {
@@ -90,11 +91,7 @@ class Rows {
     Json row = start("accuracy", r.method, r.kind);
     row["rays"] = r.kind;
     row["judged"] = r.judged;
-    row["hits"] = r.hits;
-    row["lost"] = r.lost;
-    row["false_hits"] = r.false_hits;
-    row["wrong_primitive"] = r.wrong_primitive;
-    row["any_closest_disagree"] = r.any_closest_disagree;
+    put_answer_counts(row, r);
     row["max_t_error_ulp"] = r.max_t_error_ulp;
     row["t_error_steps"] = Json::array();
     for (const auto& [end, hits] : r.t_error_steps)

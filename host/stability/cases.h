@@ -48,6 +48,10 @@ void add_machine_cases(std::vector<Case>& cases);   // 61 to 69
 // bound.
 inline constexpr double kMostUlp = 0.5625;
 
+// A soup of so many triangles in a hill, and rays that have their corners and middles of edges exactly: what
+// is compared bit for bit, at other scales and on other machines.
+[[nodiscard]] Specimen soup_and_hill(const Bench& bench, unsigned triangles);
+
 // Checks of the geometry group that need more than specimens.
 [[nodiscard]] std::vector<Verdict> check_scales(const Bench& bench, const CaseInfo& info);
 [[nodiscard]] std::vector<Verdict> check_indices(const Bench& bench, const CaseInfo& info);

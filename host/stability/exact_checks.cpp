@@ -35,17 +35,6 @@ bool same_hit(const Hit& a, const Hit& b, int power) {
          std::memcmp(&a.u, &b.u, 2 * sizeof a.u) == 0;
 }
 
-Specimen base_specimen(const Bench& bench) {
-  Specimen specimen{soup(500, 0.6F, 0.0F, 10.0F, bench.seed), {}, Expect::kOracle};
-  append(specimen.triangles, hill(8, 3, bench.seed));
-  SteadyRandom random(bench.seed);
-  for (std::uint32_t i = 0; i < bench.rays; ++i) {
-    const Triangle& t = specimen.triangles[random.below(static_cast<unsigned>(specimen.triangles.size()))];
-    specimen.rays.push_back(through(place_on(t, i % 3, random), 12.0F, random));
-  }
-  return specimen;
-}
-
 // Origins scale with the scene, directions do not: so t does.
 Specimen scaled_by(const Specimen& base, int power) {
   Specimen out{scaled(base.triangles, power), base.rays, base.expect};
@@ -57,9 +46,20 @@ Specimen scaled_by(const Specimen& base, int power) {
 
 }  // namespace
 
+Specimen soup_and_hill(const Bench& bench, unsigned triangles) {
+  Specimen specimen{soup(triangles, 0.6F, 0.0F, 10.0F, bench.seed), {}, Expect::kOracle};
+  append(specimen.triangles, hill(8, 3, bench.seed));
+  SteadyRandom random(bench.seed);
+  for (std::uint32_t i = 0; i < bench.rays; ++i) {
+    const Triangle& t = specimen.triangles[random.below(static_cast<unsigned>(specimen.triangles.size()))];
+    specimen.rays.push_back(through(place_on(t, i % 3, random), 12.0F, random));
+  }
+  return specimen;
+}
+
 std::vector<Verdict> check_scales(const Bench& bench, const CaseInfo& info) {
   std::vector<Verdict> all;
-  const Specimen base = base_specimen(bench);
+  const Specimen base = soup_and_hill(bench, 500);
   for (const Builder& builder : bench.builders) {
     std::vector<Verdict> verdicts;
     for (const Flavour& flavour : bench.flavours)

@@ -15,17 +15,6 @@ namespace gnomon::stability {
 
 namespace {
 
-Specimen specimen_of(const Bench& bench) {
-  Specimen specimen{soup(700, 0.6F, 0.0F, 10.0F, bench.seed), {}, Expect::kOracle};
-  append(specimen.triangles, hill(8, 3, bench.seed));
-  SteadyRandom random(bench.seed);
-  for (std::uint32_t i = 0; i < bench.rays; ++i) {
-    const Triangle& t = specimen.triangles[random.below(static_cast<unsigned>(specimen.triangles.size()))];
-    specimen.rays.push_back(through(place_on(t, i % 3, random), 12.0F, random));
-  }
-  return specimen;
-}
-
 // What a machine must give, by each builder: the bench's own.
 struct Expected {
   Specimen specimen;
@@ -34,7 +23,7 @@ struct Expected {
 };
 
 Expected expected_of(const Bench& bench) {
-  Expected out{specimen_of(bench), {}, {}};
+  Expected out{soup_and_hill(bench, 700), {}, {}};
   for (const Builder& builder : bench.builders) {
     const DeviceBvh tree = build_device(bench.context, out.specimen.triangles, builder.options);
     out.hashes.push_back(tree_hash(download_bvh(bench.context, tree)));

@@ -46,7 +46,7 @@ TEST_CASE("both flavours build the best reference's tree from every awkward inpu
   }
 }
 
-TEST_CASE("both flavours divide the same triangles", "[portable][best]") {
+TEST_CASE("both flavours divide the same triangles", "[serial][portable][best]") {
   const Triangles triangles = with_large_ones(1500, 250, 231);
   require_same(triangles, best(1));
   require_same(triangles, best(16, 100));

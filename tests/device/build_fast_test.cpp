@@ -36,7 +36,8 @@ TEST_CASE("the serial flavour builds the fast reference's tree from every awkwar
   }
 }
 
-TEST_CASE("the cooperative flavour builds the same fast tree, of several segments too", "[portable][fast]") {
+TEST_CASE("the cooperative flavour builds the same fast tree, of several segments too",
+          "[serial][portable][fast]") {
   for (const auto& [name, triangles] : gnomon::test::awkward_inputs()) {
     CAPTURE(name);
     require_same(triangles, fast(16, 64));

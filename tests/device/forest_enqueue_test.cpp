@@ -41,7 +41,8 @@ struct Trees {
 
 }  // namespace
 
-TEST_CASE("a forest's enqueued traces answer as its blocking ones, at once and in passes", "[portable]") {
+TEST_CASE("a forest's enqueued traces answer as its blocking ones, at once and in passes",
+          "[serial][portable]") {
   const Trees trees;
   Batch batch = batch_of(gnomon::test::all_rays(trees.areas, 40, 122));
   for (const std::uint32_t step_limit : {0U, 400U}) {

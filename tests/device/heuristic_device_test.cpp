@@ -43,12 +43,16 @@ TEST_CASE("every measure builds the reference's tree, through large nodes and sm
 }
 
 // One work-group builds the whole tree where the published leaf rule holds: too much for a device that ends
-// long loops.
+// long loops. That rule and published planes know of a measure only what it says of boxes: a measure of each
+// way to say it is enough, and spares compiling the others once more.
 TEST_CASE("axis policies, published and repaired, choose what the reference chooses", "[unlimited]") {
   const auto triangles = gnomon::test::soup(700, 92);
   for (const auto& [name, measure] : gnomon::test::every_measure()) {
+    const bool published_too = measure.kind == GN_MEASURE_LINEAR || measure.kind == GN_MEASURE_WINDOW ||
+                               measure.kind == GN_MEASURE_SOLID_ANGLE;
     for (const AxisPolicy axes : {AxisPolicy::kSpfh, AxisPolicy::kLsph}) {
       for (const bool repaired : {false, true}) {
+        if (!repaired && !published_too) continue;
         CAPTURE(name, repaired);
         BuildOptions options;
         options.measure = measure;
@@ -83,8 +87,10 @@ TEST_CASE("the cooperative flavour heeds linear measures and policies", "[portab
     require_same_in_groups(1, axes);
 }
 
+// A group's work-items each measure boxes of their own, by whichever measure: its kinds are told apart above.
+// Each compiles for 13 s.
 TEST_CASE("the cooperative flavour heeds windows and points", "[unlimited]") {
-  for (const std::size_t which : {2U, 4U, 6U, 8U}) require_same_in_groups(which, AxisPolicy::kAll);
+  for (const std::size_t which : {2U, 8U}) require_same_in_groups(which, AxisPolicy::kAll);
 }
 
 // Points on a line have boxes without surface: every split costs nothing and ties at nothing.

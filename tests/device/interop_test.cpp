@@ -53,7 +53,7 @@ struct Foreign {
 }  // namespace
 
 TEST_CASE("builds and traces on the caller's context, queue and buffers, and leaves them as they were",
-          "[portable]") {
+          "[serial][portable]") {
   const Foreign foreign;
   const cl_uint contexts = foreign.context_references();
   const cl_uint queues = foreign.queue_references();

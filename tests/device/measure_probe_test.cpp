@@ -56,7 +56,7 @@ std::vector<GnMeasure> probed_measures() {
 }
 
 constexpr std::uint32_t kManyBoxes = 240;
-constexpr std::uint32_t kFewBoxes = 40;  // for the simulator, which takes its time
+constexpr std::uint32_t kFewBoxes = 16;  // for the simulator, which takes its time
 
 // options: of the kernel's compiler.
 void require_host_bits(const char* options, std::uint32_t box_count) {
@@ -98,7 +98,8 @@ TEST_CASE("every measure of a box has the host's bits on the device", "[portable
   require_host_bits("", kManyBoxes);
 }
 
-TEST_CASE("every measure of a box has the host's bits in four lanes too", "[portable]") {
+// Devices that end long loops take none but linear measures in lanes, which their trees show.
+TEST_CASE("every measure of a box has the host's bits in four lanes too", "[portable][unlimited]") {
   require_host_bits("-DGN_WGS=1", kManyBoxes);
 }
 

@@ -6,28 +6,20 @@
 
 #include "support/bundles.h"
 
-using gnomon::test::bundles;
-using gnomon::test::camera_rays;
-using gnomon::test::Point;
-using gnomon::test::ray;
-using gnomon::test::Rays;
-using gnomon::test::require_equal_flavours;
-using gnomon::test::require_faultless;
-using gnomon::test::tiled;
-using gnomon::test::Triangles;
+using namespace gnomon::test;
 
 // Large triangles seen nearly edge-on, slivers, and stacks of sheets as near as floats can be told apart.
 TEST_CASE("packets rank sheets that nearly touch and slivers as the other flavours do", "[unlimited]") {
-  gnomon::test::Random random(207);
+  Random random(207);
   Triangles triangles;
   for (int i = 0; i < 200; ++i) {
     float y = 2.0F;
     for (int step = 0; step < i % 7; ++step) y = std::nextafter(y, i % 2 == 0 ? 0.0F : 4.0F);
     const float turn = random.between(-0.001F, 0.001F);
-    triangles.push_back(gnomon::test::triangle({-50, y, -50}, {60, y + turn, -40}, {5, y, 70}));
-    triangles.push_back(gnomon::test::triangle({random.between(0, 10), random.between(0, 10), -50},
-                                               {random.between(0, 10), random.between(0, 10), 60},
-                                               {5, random.between(0, 10), random.between(-1e-3F, 1e-3F)}));
+    triangles.push_back(triangle({-50, y, -50}, {60, y + turn, -40}, {5, y, 70}));
+    triangles.push_back(triangle({random.between(0, 10), random.between(0, 10), -50},
+                                 {random.between(0, 10), random.between(0, 10), 60},
+                                 {5, random.between(0, 10), random.between(-1e-3F, 1e-3F)}));
   }
   for (const auto& [name, rays] : bundles(4)) {
     CAPTURE(name);
@@ -38,7 +30,7 @@ TEST_CASE("packets rank sheets that nearly touch and slivers as the other flavou
 
 // Numbers so small or so large that products of them underflow or overflow.
 TEST_CASE("packets agree where products underflow and overflow", "[unlimited]") {
-  gnomon::test::Random random(208);
+  Random random(208);
   for (const auto& [size, depth, far] : {std::tuple(1e-15F, 1e-30F, 1.0F),
                                          {1e-20F, 1e-20F, 1e-18F},
                                          {2e14F, 2e14F, 1e17F},
@@ -49,7 +41,7 @@ TEST_CASE("packets agree where products underflow and overflow", "[unlimited]") 
       const auto at = [&] {
         return Point{random.between(-size, size), random.between(-size, size), depth * random.between(-1, 0)};
       };
-      triangles.push_back(gnomon::test::triangle(at(), at(), at()));
+      triangles.push_back(triangle(at(), at(), at()));
     }
     const float spread = size / far;
     require_equal_flavours(triangles, tiled(3, [&](float x, float y) {
@@ -62,7 +54,7 @@ TEST_CASE("packets agree where products underflow and overflow", "[unlimited]") 
 }
 
 TEST_CASE("packets agree on ranges that end or begin next to a hit", "[unlimited]") {
-  const auto triangles = gnomon::test::soup(1000, 209, 1.0F);
+  const auto triangles = soup(1000, 209, 1.0F);
   for (auto& [name, rays] : bundles(3)) {
     CAPTURE(name);
     const auto hits = require_equal_flavours(triangles, rays);
@@ -79,7 +71,7 @@ TEST_CASE("packets agree on ranges that end or begin next to a hit", "[unlimited
 // Sheets in one tilted plane but for last bits, seen so nearly edge-on that floats are further off than the
 // slack of distances: they rank them wrongly unless they know how far off a plane may be.
 TEST_CASE("packets know how far off the distance to a sheet seen edge-on may be", "[unlimited]") {
-  gnomon::test::Random random(210);
+  Random random(210);
   // Two directions in the plane and one off it.
   const Point along{0.8F, -0.36F, 0.48F};
   const Point across{-0.6F, -0.48F, 0.64F};
@@ -91,9 +83,9 @@ TEST_CASE("packets know how far off the distance to a sheet seen edge-on may be"
   };
   Triangles triangles;
   for (int i = 0; i < 60; ++i) {
-    GnTriangle t = gnomon::test::triangle(at(random.between(-60, -40), random.between(-40, -20), 0),
-                                          at(random.between(40, 60), random.between(-40, -20), 0),
-                                          at(random.between(-10, 10), random.between(40, 60), 0));
+    GnTriangle t = triangle(at(random.between(-60, -40), random.between(-40, -20), 0),
+                            at(random.between(40, 60), random.between(-40, -20), 0),
+                            at(random.between(-10, 10), random.between(40, 60), 0));
     for (float* v : {t.v0, t.v1, t.v2})
       for (int k = 0; k < 3; ++k)
         if (random.below(2) == 0) v[k] = std::nextafter(v[k], random.below(2) == 0 ? -100.0F : 100.0F);
@@ -116,11 +108,11 @@ TEST_CASE("packets know how far off the distance to a sheet seen edge-on may be"
 // Distances are counted from the apex, which the nearest ray passes: others add as much as they start before
 // it.
 TEST_CASE("packets keep to the ranges of parallel rays that start far apart", "[unlimited]") {
-  gnomon::test::Random random(211);
+  Random random(211);
   Triangles triangles;
   for (int i = 0; i < 40; ++i) {
     const float z = random.between(-1, 1);
-    triangles.push_back(gnomon::test::triangle({-30, -30, z}, {40, -30, z}, {0, 60, z}));
+    triangles.push_back(triangle({-30, -30, z}, {40, -30, z}, {0, 60, z}));
   }
   Rays rays = tiled(4, [&](float x, float y) {
     const float back = random.between(2, 3.0e4F) * (x + 0.5F) + 3.0F;
@@ -139,9 +131,9 @@ TEST_CASE("packets keep to the ranges of parallel rays that start far apart", "[
 // The light is where the rays end, as well as their roundings let it be: that may be more than a small
 // triangle beside it allows.
 TEST_CASE("packets know how vague a light is that rays reach from far away", "[unlimited]") {
-  gnomon::test::Random random(212);
+  Random random(212);
   const Point light{5, 5, 5};
-  const Triangles triangles = gnomon::test::soup(300, 213, 0.2F, 0.0F);
+  const Triangles triangles = soup(300, 213, 0.2F, 0.0F);
   Triangles near;
   for (GnTriangle t : triangles) {
     for (float* v : {t.v0, t.v1, t.v2})
@@ -153,8 +145,8 @@ TEST_CASE("packets know how vague a light is that rays reach from far away", "[u
     Rays rays;
     for (int i = 0; i < 2048; ++i) {
       const auto& t = near[random.below(static_cast<std::uint32_t>(near.size()))];
-      const float* a = gnomon::test::corner(t, random.below(3));
-      const float* b = gnomon::test::corner(t, random.below(3));
+      const float* a = corner(t, random.below(3));
+      const float* b = corner(t, random.below(3));
       Point from{};
       Point way{};
       float length = 0.0F;
@@ -173,7 +165,7 @@ TEST_CASE("packets know how vague a light is that rays reach from far away", "[u
 }
 
 TEST_CASE("rays that may hit behind their origin are not lost in packets", "[unlimited]") {
-  const auto triangles = gnomon::test::soup(1500, 214, 0.6F);
+  const auto triangles = soup(1500, 214, 0.6F);
   for (auto& [name, rays] : bundles(4)) {
     CAPTURE(name);
     for (GnRay& r : rays) {
@@ -187,7 +179,7 @@ TEST_CASE("rays that may hit behind their origin are not lost in packets", "[unl
   }
   // Boxes without thickness, met at the range's end.
   const auto hits =
-      require_equal_flavours(gnomon::test::grid(8, 2.0F), tiled(2, [](float x, float y) {
+      require_equal_flavours(grid(8, 2.0F), tiled(2, [](float x, float y) {
                                return ray({4 + 0.9F * x, -3, 4 + 0.9F * y}, {0, -1, 0}, -9.0F, -5.0F);
                              }));
   REQUIRE(std::all_of(hits.begin(), hits.end(), [](const GnHit& hit) { return hit.t == -5.0F; }));

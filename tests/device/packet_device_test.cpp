@@ -8,16 +8,7 @@
 #include "support/bundles.h"
 
 using gnomon::TraceFlavour;
-using gnomon::test::bundles;
-using gnomon::test::camera_rays;
-using gnomon::test::context;
-using gnomon::test::Point;
-using gnomon::test::ray;
-using gnomon::test::Rays;
-using gnomon::test::require_equal_flavours;
-using gnomon::test::require_faultless;
-using gnomon::test::tiled;
-using gnomon::test::Triangles;
+using namespace gnomon::test;
 
 namespace {
 
@@ -48,7 +39,7 @@ TEST_CASE("packets give the other flavours' bits and the oracle's answers on bun
   for (const auto& [name, rays] : bundles(6)) {
     for (const float size : {0.1F, 1.0F, 6.0F}) {
       CAPTURE(name, size);
-      const auto triangles = gnomon::test::soup(1500, 201, size);
+      const auto triangles = soup(1500, 201, size);
       require_equal_flavours(triangles, rays);
       require_faultless(triangles, rays, false);
     }
@@ -56,7 +47,7 @@ TEST_CASE("packets give the other flavours' bits and the oracle's answers on bun
 }
 
 TEST_CASE("packets give the other flavours' bits on a small soup", "[memcheck][unlimited]") {
-  const auto triangles = gnomon::test::soup(60, 202, 1.5F);
+  const auto triangles = soup(60, 202, 1.5F);
   for (const auto& [name, rays] : bundles(1)) {
     CAPTURE(name);
     require_equal_flavours(triangles, Rays(rays.begin(), rays.begin() + 24));
@@ -65,19 +56,19 @@ TEST_CASE("packets give the other flavours' bits on a small soup", "[memcheck][u
 
 TEST_CASE("rays that run together are traced as packets", "[unlimited]") {
   if (!context().device().is_cpu) return;
-  const auto triangles = gnomon::test::soup(2000, 203, 1.0F);
+  const auto triangles = soup(2000, 203, 1.0F);
   for (const auto& [name, rays] : bundles(12)) {
     CAPTURE(name);
     REQUIRE(share_in_packets(triangles, rays, false) > 0.8);
     REQUIRE(share_in_packets(triangles, rays, true) > 0.8);
   }
   // And others are not.
-  REQUIRE(share_in_packets(triangles, gnomon::test::random_rays(4096, 204), false) < 0.1);
+  REQUIRE(share_in_packets(triangles, random_rays(4096, 204), false) < 0.1);
 }
 
 TEST_CASE("a batch that packets do not divide, or with rays that do not belong, has the same answers",
           "[unlimited]") {
-  const auto triangles = gnomon::test::soup(1000, 205, 1.0F);
+  const auto triangles = soup(1000, 205, 1.0F);
   for (auto& [name, rays] : bundles(4)) {
     CAPTURE(name);
     rays.resize(rays.size() - 41);
@@ -95,11 +86,11 @@ TEST_CASE("a batch that packets do not divide, or with rays that do not belong, 
 // Camera rays through corners, edges' middles and points of triangles, in order of direction; far from the
 // origin and at scales whose numbers are as small and as large as coordinates may be.
 TEST_CASE("packets lose no ray aimed at corners and edges, at any scale and distance", "[unlimited]") {
-  gnomon::test::Random random(206);
+  Random random(206);
   for (const float scale : {1.0F, std::ldexp(1.0F, -40), std::ldexp(1.0F, 30)}) {
     for (const float offset : {0.0F, 1.0e3F, 1.0e5F}) {
       CAPTURE(scale, offset);
-      Triangles triangles = gnomon::test::grid(12, 0.8F);
+      Triangles triangles = grid(12, 0.8F);
       for (GnTriangle& t : triangles)
         for (float* v : {t.v0, t.v1, t.v2})
           for (int k = 0; k < 3; ++k) v[k] = scale * (v[k] + offset);
@@ -107,10 +98,10 @@ TEST_CASE("packets lose no ray aimed at corners and edges, at any scale and dist
       Rays rays;
       for (int i = 0; i < 1500; ++i) {
         const auto& t = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
-        const float* a = gnomon::test::corner(t, random.below(3));
-        const float* b = gnomon::test::corner(t, random.below(3));
+        const float* a = corner(t, random.below(3));
+        const float* b = corner(t, random.below(3));
         const float target[3] = {0.5F * (a[0] + b[0]), 0.5F * (a[1] + b[1]), 0.5F * (a[2] + b[2])};
-        rays.push_back(gnomon::test::aimed(eye, target));
+        rays.push_back(aimed(eye, target));
       }
       const auto cell = [](const GnRay& r) {
         return std::pair(std::floor(8 * r.direction[0] / r.direction[1]), r.direction[2] / r.direction[1]);
@@ -124,8 +115,8 @@ TEST_CASE("packets lose no ray aimed at corners and edges, at any scale and dist
 
 TEST_CASE("a packet of shadow rays ends when all are occluded", "[unlimited]") {
   if (!context().device().is_cpu) return;
-  Triangles triangles = gnomon::test::soup(2000, 215, 0.5F);
-  triangles.push_back(gnomon::test::triangle({-900, 11, -900}, {900, 11, -900}, {0, 11, 1800}));
+  Triangles triangles = soup(2000, 215, 0.5F);
+  triangles.push_back(triangle({-900, 11, -900}, {900, 11, -900}, {0, 11, 1800}));
   gnomon::TraceOptions options;
   options.counters = true;
   options.flavour = TraceFlavour::kPacket;

@@ -58,7 +58,8 @@ void require_sorted(const Keys& keys, const SortPlan& plan, std::uint32_t bits =
 
 }  // namespace
 
-TEST_CASE("both flavours sort stably at every size around a chunk's and a tile's edge", "[portable]") {
+TEST_CASE("both flavours sort stably at every size around a chunk's and a tile's edge",
+          "[serial][portable]") {
   for (const std::uint32_t count : {1U, 2U, 63U, 64U, 65U, 127U, 128U, 129U, 300U}) {
     for (const std::uint32_t below : {1U, 5U, 1000U}) {
       const Keys keys = random_keys(count, below, 140 + count);

@@ -69,7 +69,7 @@ void require_refitted_wide(const Triangles& before, const Triangles& after,
 }  // namespace
 
 TEST_CASE("a refitted tree has the boxes of its moved triangles, and its own where none moved",
-          "[portable][refit]") {
+          "[serial][portable][refit]") {
   for (const auto& shape : gnomon::test::wide_shapes()) {
     // Devices that end loops build no leaves this large.
     if (context().device().loop_limit != 0 && shape.options.max_leaf_size > 100) continue;

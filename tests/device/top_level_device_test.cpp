@@ -122,7 +122,8 @@ TEST_CASE("triangles a rounding outside the faces are found by every ray that le
   REQUIRE(sum.outcomes[GN_OUTCOME_LOCAL] > 500);
 }
 
-TEST_CASE("overlapping, nested, touching and repeated areas, some outside the scene or empty", "[portable]") {
+TEST_CASE("overlapping, nested, touching and repeated areas, some outside the scene or empty",
+          "[serial][portable]") {
   const std::vector<GnTriangle> triangles = soup(300, 136, 1.0F);
   std::vector<InfluenceArea> areas;
   for (const double z : {0.0, 4.0, 8.0, 4.0}) {  // touch face to face; two are the same

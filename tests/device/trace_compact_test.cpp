@@ -7,43 +7,37 @@
 #include "support/flavours.h"
 
 using gnomon::TraceFlavour;
-using gnomon::test::aimed_rays;
-using gnomon::test::awkward_rays;
-using gnomon::test::context;
-using gnomon::test::Rays;
-using gnomon::test::require_same_answers;
-using gnomon::test::scaled;
-using gnomon::test::Triangles;
+using namespace gnomon::test;
 
 namespace {
 
 void require_equal_to_thread(const Triangles& triangles, const Rays& rays,
                              const gnomon::BuildOptions& build = {}) {
   const auto tree = gnomon::build_device(context(), triangles, build);
-  const auto thread = gnomon::test::trace(tree, rays, TraceFlavour::kThread);
-  require_same_answers(thread, gnomon::test::trace(tree, rays, TraceFlavour::kCompact));
-  require_same_answers(thread, gnomon::test::trace(tree, rays, TraceFlavour::kCompact, false, true));
+  const auto thread = trace(tree, rays, TraceFlavour::kThread);
+  require_same_answers(thread, trace(tree, rays, TraceFlavour::kCompact));
+  require_same_answers(thread, trace(tree, rays, TraceFlavour::kCompact, false, true));
 }
 
 }  // namespace
 
-TEST_CASE("the compact flavour gives the thread flavour's bits on small scenes", "[portable][memcheck]") {
-  require_equal_to_thread(gnomon::test::soup(60, 633, 1.0F), gnomon::test::random_rays(20, 634));
-  require_equal_to_thread(gnomon::test::grid(5, 2.0F), gnomon::test::random_rays(20, 635),
-                          gnomon::test::leaves_of(1));
+TEST_CASE("the compact flavour gives the thread flavour's bits on small scenes",
+          "[serial][portable][memcheck]") {
+  require_equal_to_thread(soup(60, 633, 1.0F), random_rays(20, 634));
+  require_equal_to_thread(grid(5, 2.0F), random_rays(20, 635), leaves_of(1));
 }
 
 TEST_CASE("the compact flavour gives the thread flavour's bits where corners are shared", "[unlimited]") {
   for (const std::uint32_t leaf : {1U, 8U, 40U}) {
     CAPTURE(leaf);
-    Triangles triangles = gnomon::test::grid(30, 2.0F);
-    const Triangles walls = scaled(gnomon::test::grid(20, 2.0F), 0.37F, 1.0F);
+    Triangles triangles = grid(30, 2.0F);
+    const Triangles walls = scaled(grid(20, 2.0F), 0.37F, 1.0F);
     for (GnTriangle t : walls) {
       for (float* v : {t.v0, t.v1, t.v2}) std::swap(v[1], v[2]);
       triangles.push_back(t);
     }
-    require_equal_to_thread(triangles, aimed_rays(triangles, 1500, 636), gnomon::test::lazy_leaves_of(leaf));
-    require_equal_to_thread(triangles, awkward_rays(1500, 637), gnomon::test::leaves_of(leaf));
+    require_equal_to_thread(triangles, aimed_rays(triangles, 1500, 636), lazy_leaves_of(leaf));
+    require_equal_to_thread(triangles, awkward_rays(1500, 637), leaves_of(leaf));
   }
 }
 
@@ -52,12 +46,12 @@ TEST_CASE("the compact flavour loses nothing, judged by the oracle, near and far
   for (const float scale : {1e-6F, 1.0F, 1e6F}) {
     for (const float offset : {0.0F, 1000.0F}) {
       CAPTURE(scale, offset);
-      const Triangles triangles = scaled(gnomon::test::soup(400, 638, 1.0F), scale, offset * scale);
+      const Triangles triangles = scaled(soup(400, 638, 1.0F), scale, offset * scale);
       Rays rays = aimed_rays(scaled(triangles, 1.0F / scale, 0.0F), 400, 639, offset);
       for (GnRay& r : rays)
         for (float& x : r.origin) x *= scale;
       const auto tree = gnomon::build_device(context(), triangles);
-      const auto traced = gnomon::test::trace(tree, rays, TraceFlavour::kCompact);
+      const auto traced = trace(tree, rays, TraceFlavour::kCompact);
       gnomon::OracleOptions options;
       options.max_rays = rays.size();
       const auto report = gnomon::judge(triangles, rays, traced.closest.hits, traced.any.occluded, options);
@@ -71,10 +65,10 @@ TEST_CASE("the compact flavour loses nothing, judged by the oracle, near and far
 
 TEST_CASE("a compact tree visits few boxes beyond the wide one's, the same with every work-group",
           "[unlimited]") {
-  const Triangles triangles = gnomon::test::soup(3000, 640, 0.3F);
-  const Rays rays = gnomon::test::random_rays(1000, 641);
+  const Triangles triangles = soup(3000, 640, 0.3F);
+  const Rays rays = random_rays(1000, 641);
   const auto tree = gnomon::build_device(context(), triangles);
-  const auto wide = gnomon::test::trace(tree, rays, TraceFlavour::kWide, false, true);
+  const auto wide = trace(tree, rays, TraceFlavour::kWide, false, true);
   const auto sum = [](const gnomon::TraceResult& result, std::uint32_t GnRayCounters::*what) {
     double all = 0.0;
     for (const GnRayCounters& c : result.counters) all += c.*what;
@@ -103,11 +97,11 @@ TEST_CASE("a compact tree visits few boxes beyond the wide one's, the same with 
 
 TEST_CASE("a compact tree is traced by the compact flavour alone, sorted or not, and not in passes",
           "[portable]") {
-  const auto triangles = gnomon::test::soup(50, 642, 2.0F);
+  const auto triangles = soup(50, 642, 2.0F);
   const auto tree = gnomon::build_device(context(), triangles);
   const auto wide = collapse_device(context(), tree);
   const auto compact = compact_device(context(), wide);
-  const Rays rays = gnomon::test::random_rays(200, 643);
+  const Rays rays = random_rays(200, 643);
   gnomon::TraceOptions options;
   const auto hits = gnomon::Tracer(context(), compact, options).closest(rays).hits;
   REQUIRE(gnomon::Tracer(context(), compact).flavour() == TraceFlavour::kCompact);
@@ -134,7 +128,7 @@ TEST_CASE("a compact tree is traced by the compact flavour alone, sorted or not,
 }
 
 TEST_CASE("a device that ends loops is not asked for large compact trees", "[portable]") {
-  const auto tree = gnomon::build_device(context(), gnomon::test::soup(600, 645));
+  const auto tree = gnomon::build_device(context(), soup(600, 645));
   gnomon::TraceOptions options;
   options.flavour = TraceFlavour::kCompact;
   if (context().device().loop_limit != 0) {

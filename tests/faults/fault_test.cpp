@@ -10,6 +10,7 @@
 #include <set>
 
 #include "faults/fault_layer.h"
+#include "gnomon/device/refit_device.h"
 #include "gnomon/device/trace_areas.h"
 #include "support/device.h"
 #include "support/shapes.h"
@@ -197,6 +198,24 @@ TEST_CASE("a build in levels") {
   }
 }
 
+TEST_CASE("a fast build, and a best one with parts of triangles and subtrees that move") {
+  std::vector<GnTriangle> some = test::soup(150, 205, 0.3F);
+  const std::vector<GnTriangle> large = test::soup(20, 206, 5.0F);
+  some.insert(some.end(), large.begin(), large.end());
+  for (const Builder builder : {Builder::kFast, Builder::kBest}) {
+    BuildOptions options;
+    options.builder = builder;
+    const Outcomes outcomes = fail_each(
+        [&] { return tree_hash(download_bvh(shared(), build_device(shared(), some, options))); }, 60);
+    CAPTURE(to_string(builder));
+    for (const char* call : {"clCreateBuffer", "clCreateKernel", "clSetKernelArg", "clEnqueueNDRangeKernel",
+                             "clEnqueueMapBuffer"}) {
+      CAPTURE(call);
+      REQUIRE(outcomes.errors.contains(call));
+    }
+  }
+}
+
 TEST_CASE("buffers in large pages") {
   const std::vector<std::uint32_t> words(1U << 20U, 7U);
   const Outcomes outcomes = fail_each(
@@ -222,6 +241,22 @@ TEST_CASE("tracing by the binary tree, in one go and in passes") {
         fail_each([&] { return trace_all(shared(), Tracer(shared(), tree, options)); }, 30);
     REQUIRE(outcomes.errors.contains("clEnqueueNDRangeKernel"));
   }
+}
+
+TEST_CASE("packets, their rays sorted, through a tree that is refitted first") {
+  if (shared().device().loop_limit != 0) return;  // such devices have none
+  DeviceBvh tree = build_device(shared(), triangles());
+  TraceOptions options;
+  options.flavour = TraceFlavour::kPacket;
+  options.sort_rays = true;
+  const Outcomes outcomes = fail_each(
+      [&] {
+        refit_device(shared(), tree, triangles());
+        return trace_all(shared(), Tracer(shared(), tree, options));
+      },
+      60);
+  REQUIRE(outcomes.errors.contains("clEnqueueNDRangeKernel"));
+  REQUIRE(outcomes.errors.contains("clCreateBuffer"));
 }
 
 TEST_CASE("making a tree compact and tracing it") {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "gnomon/tree/oracle.h"
-#include "support/shapes.h"
+#include "support/thin_triangles.h"
 
 using gnomon::test::Random;
 
@@ -271,30 +271,14 @@ TEST_CASE(
   int met = 0;
   double worst = 0.0;
   for (int i = 0; i < 200'000; ++i) {
-    const float offset = i % 3 == 0 ? 0.0F : i % 3 == 1 ? 1e3F : 1e6F;
-    const float width = std::ldexp(1.0F, -static_cast<int>(random.below(30)));
-    std::array<float, 3> a{}, b{}, c{}, inside{}, d{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      a[k] = offset + random.between(-10, 10);
-      b[k] = a[k] + random.between(-10, 10);
-      c[k] = 0.5F * (a[k] + b[k]) + width * random.between(-1, 1);
-      inside[k] = 0.25F * a[k] + 0.25F * b[k] + 0.5F * c[k];
-      d[k] = random.between(-1, 1);
-    }
-    const float back = i % 4 == 0   ? 0.0F
-                       : i % 4 == 1 ? random.between(-1e-5F, 1e-5F)
-                                    : random.between(-20, 20);
-    for (std::size_t k = 0; k < 3; ++k) inside[k] -= back * d[k];
-    const GnRay r = gnomon::test::ray(inside, d);
-    const GnTriangle t = gnomon::test::triangle(a, b, c);
+    const auto [t, r] = gnomon::test::thin_case(random, i);
     const GnRayFrame frame = gn_ray_frame(&r);
     GnHit hit{};
     const gnomon::ExactHit exact = gnomon::exact_intersect(r, t);
     REQUIRE((gn_triangle_hit(&frame, t.v0, t.v1, t.v2, &hit) != 0) == exact.inside);
     if (!exact.inside) continue;
     ++met;
-    const double ulp =
-        std::ldexp(1.0, std::max(std::ilogb(std::max(std::fabs(exact.t), 0x1p-126)), -126) - 23);
+    const double ulp = gnomon::test::ulp_at(exact.t);
     worst = std::max(worst, std::fabs(static_cast<double>(hit.t) - exact.t) / ulp);
   }
   REQUIRE(met > 20'000);

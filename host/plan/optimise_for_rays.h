@@ -29,7 +29,7 @@ struct SampleMeasure {
 
 struct SampledOptions {
   std::uint32_t least_met = 2;   // nodes that fewer segments meet are not looked into; from 1
-  float least_saved = 2.5F;      // moves that spare the segments no more boxes than this are not made; >= 0
+  float least_saved = 1.5F;      // moves that spare the segments no more boxes than this are not made; >= 0
   double most_work = 1e12;       // in box tests: the moves that promise most come first; >= 0, finite
   std::uint32_t max_depth = 96;  // a tree that would become deeper than this and than it was stays as it is
 

@@ -66,7 +66,7 @@ TEST_CASE("a mask of segments is what each of them says") {
       }
       met += known.count();
     }
-    REQUIRE(met > 0);
+    if (count > 60) REQUIRE(met > 100);
   }
 }
 

@@ -54,7 +54,7 @@ struct PlanOptions {
   OptimiseOptions optimise = thorough();  // passes by areas, the baseline's too; the plan sets face_weights
   SampledOptions sampled;                 // moves by sampled rays; most_work is cut to sample_share
   // Of the baseline's build, at most: moves by sampled rays; probes, beyond the least there must be. >= 0.
-  double sample_share = 0.5;
+  double sample_share = 0.6;
   double probe_share = 0.2;
   RaceOptions race;
   PlanPrices prices;

@@ -7,11 +7,11 @@ namespace gnomon {
 namespace {
 
 // What work takes beside a box test of a tracer, rounded from clocks (bench/results).
-constexpr double kBoundWork = 3.0;    // two nodes' masks and boxes joined
-constexpr double kWideWork = 7.0;     // 64 segments against a box
-constexpr double kSingleWork = 1.0;   // one of them
-constexpr double kItemWork = 15.0;    // a node of the part, before any search
-constexpr double kSearchWork = 15.0;  // of a node's search, beside the rest
+constexpr double kBoundWork = 5.4;    // two nodes' masks and boxes joined
+constexpr double kWideWork = 12.6;    // 64 segments against a box
+constexpr double kSingleWork = 1.8;   // one of them
+constexpr double kItemWork = 27.0;    // a node of the part, before any search
+constexpr double kSearchWork = 27.0;  // of a node's search, beside the rest
 
 GnBox around(const GnBox& a, const GnBox& b) {
   GnBox both;

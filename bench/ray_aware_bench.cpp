@@ -45,22 +45,28 @@ double mean_of(const std::vector<double>& values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-// The reference builder, which makes the baseline of a set-up once.
+// The reference builder, which makes each tree of a set-up once.
 class Builder {
  public:
   [[nodiscard]] PlanBuilder get() {
     PlanBuilder out = reference_builder();
     out.build = [this](std::span<const Triangle> triangles, const BuildOptions& options) {
       const float* w = options.measure.weights;
-      const auto [at, fresh] = known_.try_emplace({w[0], w[1], w[2]});
+      const auto [at, fresh] = built_.try_emplace({w[0], w[1], w[2]});
       if (fresh) at->second = build_reference(triangles, options);
+      return at->second;
+    };
+    out.optimise = [this](const Bvh& bvh, const OptimiseOptions& options) {
+      const auto [at, fresh] = moved_.try_emplace({tree_hash(bvh), options.face_weights});
+      if (fresh) at->second = optimise_reference(bvh, options);
       return at->second;
     };
     return out;
   }
 
  private:
-  std::map<std::array<float, 3>, Bvh> known_;
+  std::map<std::array<float, 3>, Bvh> built_;
+  std::map<std::pair<std::string, std::array<float, 3>>, Bvh> moved_;
 };
 
 class Bench {
@@ -75,11 +81,9 @@ class Bench {
 
  private:
   void run_case(const RayCase& rays) {
-    PlanOptions options = settings_.plan;
-    options.keep_tried = true;
     const std::vector<PlanRays> asked{
         {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, settings_.expected}};
-    const Plan plan = make_plan(set_up_.triangles, asked, options, builder_.get());
+    const Plan plan = make_plan(set_up_.triangles, asked, settings_.plan, builder_.get());
     const Decision& decision = plan.decisions.front();
     const OrderedTree& baseline = plan.trees.front().tree;
     const std::vector<Hit> expected =
@@ -94,18 +98,20 @@ class Bench {
                   {"query", to_string(rays.query)},
                   {"measured_rays", rays.draws.measure.size()}};
     row(start, "sah", baseline, rays, expected, json::object());
-    for (const Trial& trial : decision.trials) {
-      const PlanTree& tree = plan.trees[trial.tree];
-      row(start, trial.name, tree.tree, rays, expected,
-          {{"fit_gain", trial.fit_gain},
-           {"probe_gain",
-            trial.standing.baseline > 0.0 ? 1.0 - trial.standing.cost / trial.standing.baseline : 0.0},
-           {"verdict", to_string(trial.standing.verdict)},
-           {"price_units", trial.price},
-           {"build_units", tree.build_units}});
+    for (const std::string& name : candidate_names()) {
+      if (name == "sah" || (name == "sah-order" && rays.query != Query::kAny)) continue;
+      PlanOptions options = settings_.plan;
+      options.choice = name;
+      const Plan other = make_plan(set_up_.triangles, asked, options, builder_.get());
+      const PlanTree& tree = other.trees[other.decisions.front().tree];
+      json more = {{"build_units", tree.build_units}};
+      for (const Trial& trial : decision.trials) {
+        if (trial.name == name) more.update(figures_of(trial));
+      }
+      row(start, name, tree.tree, rays, expected, more);
       // The same tree, near child first: what the order alone brings.
-      if (rays.query == Query::kAny && trial.name != "sah-order")
-        row(start, trial.name + " near", {tree.tree.bvh, {}}, rays, expected, json::object());
+      if (rays.query == Query::kAny && name != "sah-order")
+        row(start, name + " near", {tree.tree.bvh, {}}, rays, expected, json::object());
     }
     row(start, "auto", plan.trees[decision.tree].tree, rays, expected,
         {{"kept", decision.kept},
@@ -113,8 +119,18 @@ class Bench {
          {"probes", decision.probes},
          {"baseline_units", plan.baseline_units},
          {"planning_units", plan.planning_units},
+         {"kept_units", plan.kept_units},
          {"probe_units", decision.probe_units}});
     std::fflush(stdout);
+  }
+
+  // Of a candidate that was tried.
+  static json figures_of(const Trial& trial) {
+    const Standing& standing = trial.standing;
+    return {{"fit_gain", trial.fit_gain},
+            {"probe_gain", standing.baseline > 0.0 ? 1.0 - standing.cost / standing.baseline : 0.0},
+            {"verdict", to_string(standing.verdict)},
+            {"price_units", trial.price}};
   }
 
   void row(json out, const std::string& tree, const OrderedTree& in, const RayCase& rays,
@@ -185,8 +201,9 @@ int main(int argc, char** argv) {
   app.add_option("--fit-rays", settings.plan.fit_rays);
   app.add_option("--mixture", settings.plan.mixture_share);
   app.add_option("--prior", settings.plan.prior_share);
-  app.add_option("--ray-passes", settings.plan.optimise_rays.max_passes);
-  app.add_option("--ray-share", settings.plan.optimise_rays.share);
+  app.add_option("--sample-share", settings.plan.sample_share, "of the baseline's build, for sampled rays");
+  app.add_option("--least-met", settings.plan.sampled.least_met);
+  app.add_option("--least-saved", settings.plan.sampled.least_saved);
   app.add_option("--passes", settings.plan.optimise.max_passes);
   app.add_option("--share", settings.plan.optimise.share);
   CLI11_PARSE(app, argc, argv);

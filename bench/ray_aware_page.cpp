@@ -118,6 +118,7 @@ class Page {
     std::map<std::string, int> kept;
     std::vector<double> regret;
     std::vector<double> planning;
+    std::vector<double> beside;
     std::string worst;
     double most = 0.0;
     for (const auto& [key, c] : cases) {
@@ -126,7 +127,10 @@ class Page {
       double best = c.cost("sah");
       for (const auto& [name, row] : c.trees) best = std::min(best, row.at("cost").get<double>());
       regret.push_back(c.cost("auto") / best);
-      planning.push_back(plan.at("planning_units").get<double>() / plan.at("baseline_units").get<double>());
+      const double baseline = plan.at("baseline_units").get<double>();
+      const double all = plan.at("planning_units").get<double>();
+      planning.push_back(all / baseline);
+      beside.push_back((all - plan.at("kept_units").get<double>()) / baseline);
       if (regret.back() <= most) continue;
       most = regret.back();
       worst = c.set_up + ", " + c.rays;
@@ -136,8 +140,16 @@ class Page {
       out.append(" ").append(name).append(" ").append(std::to_string(count)).append(",");
     out.back() = '.';
     return out + " Regret of the choice against the best of the pool: " + number(geomean(regret), "%.4f") +
-           ", at most " + number(most, "%.3f") + " (" + worst + "). Planning took " +
-           number(geomean(planning), "%.1f") + " times the baseline's build, in counts.\n";
+           ", at most " + number(most, "%.3f") + " (" + worst + ").\nPlanning took " + shares(planning) +
+           " of the baseline's build; without making what it kept, " + shares(beside) + ".\n";
+  }
+
+  static std::string shares(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    return number(sum / static_cast<double>(values.size()), "%.3f") + " (mean; geometric " +
+           number(geomean(values), "%.3f") + ", most " +
+           number(*std::max_element(values.begin(), values.end()), "%.3f") + ")";
   }
 
   [[nodiscard]] std::string nothing_helps() const {

@@ -111,6 +111,9 @@ class Learner {
     std::vector<Outcome> out(rays.size());
     if (rays.empty()) return out;
     const Node& node = bvh_.nodes[index];
+    order_.work += static_cast<double>(rays.size()) *
+                   double{node.count > 0 ? options_.cost_triangle * static_cast<float>(node.count)
+                                         : options_.cost_inner};
     if (node.count > 0) {
       for (std::size_t i = 0; i < rays.size(); ++i) out[i] = look_at_leaf(node, rays_[rays[i]]);
       return out;

@@ -32,6 +32,7 @@ struct ChildOrder {
   // and as slot keys of collapse_reference and collapse_device.
   std::vector<float> ranks;
   double sample_cost = 0.0;  // a ray of the sample in this order, the root's box not counted
+  double work = 0.0;         // of learning, all rays together: every ray looks into all it meets
 };
 
 // Learns ranks from the rays (their ranges count; not traceable ones are left out), from the leaves up: what

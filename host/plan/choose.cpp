@@ -58,7 +58,7 @@ class Chooser {
 
   Decision run() {
     if (options_.choice == "auto") {
-      if (gather()) judge();
+      decide();
     } else if (options_.choice == "sah") {
       decision_.reason = "asked for";
     } else {
@@ -84,83 +84,105 @@ class Chooser {
     return trees_.size() - 1;
   }
 
-  // Candidates that can pay at all; false where there is none.
-  bool gather() {
-    const double hope = kMostSaved * pool_.expected_cost() * rays_.expected;
+  // One candidate after the other, the best first, until one is kept; none is made that could not repay
+  // itself.
+  void decide() {
     if (probes_.size() < options_.race.least || rays_.fit.empty()) {
       decision_.reason = "too few rays to judge by: " + std::to_string(probes_.size()) + " probes";
-      return false;
+      return;
     }
+    limit_probes();
+    const double hope = kMostSaved * pool_.expected_cost() * rays_.expected;
     double cheapest = INFINITY;
-    for (const std::string& name : candidate_names()) {
-      if (name == "sah" || (name == "sah-order" && rays_.query != Query::kAny)) continue;
-      const double price = pool_.least_price(name);
+    for (const char* const name : {"sah-rays", "sah-order"}) {
+      if (name == std::string("sah-order") && rays_.query != Query::kAny) continue;
+      const double price = pool_.likely_price(name);
       cheapest = std::min(cheapest, price);
-      if (hope > 2.0 * price) candidates_.push_back(pool_.make(name));
+      if (hope > 2.0 * price && consider(name)) return;
     }
-    if (!candidates_.empty()) return true;
+    if (!decision_.trials.empty()) return;
     decision_.reason = number(rays_.expected, 0) + " rays cannot repay another tree: the cheapest costs " +
                        number(cheapest, 0) + " units, all they do on the baseline about " +
                        number(hope / kMostSaved, 0);
-    return false;
   }
 
-  [[nodiscard]] Race run_race() const {
+  // As many as the share of the baseline's build that probing may take pays for.
+  void limit_probes() {
+    const double each = 2.0 * options_.prices.trace * pool_.expected_cost();
+    const double most = options_.probe_share * pool_.baseline_units();
+    const auto least = static_cast<double>(options_.race.least);
+    if (each * static_cast<double>(probes_.size()) > most)
+      probes_.resize(std::min(probes_.size(), static_cast<std::size_t>(std::max(least, most / each))));
+  }
+
+  // Makes a candidate and has it race the baseline; whether it is kept.
+  bool consider(const std::string& name) {
+    PlanPool::Entry candidate = pool_.make(name);
+    Trial trial;
+    trial.name = name;
+    trial.fit_gain = candidate.fit_gain;
+    trial.price =
+        candidate.tree.build_units + options_.prices.byte * static_cast<double>(candidate.tree.bytes);
+    bool kept = false;
+    if (name == "sah-rays" && trial.fit_gain < options_.race.least_gain) {
+      trial.standing.verdict = Verdict::kNotBetter;
+      decision_.reason = "sampled rays save no more than " + percent(trial.fit_gain) + " of their own cost";
+    } else {
+      const Race race = run_race(candidate.tree.tree);
+      trial.standing = race.standings[0];
+      trial.saving = rays_.expected * (trial.standing.baseline - trial.standing.cost);
+      const bool better = trial.standing.verdict == Verdict::kBetter;
+      kept = better && trial.saving > trial.price;
+      explain(race, trial, better, kept);
+    }
+    if (kept || options_.keep_tried) {
+      trial.tree = add(std::move(candidate.tree));
+      if (kept) decision_.tree = trial.tree;
+    }
+    decision_.trials.push_back(std::move(trial));
+    return kept;
+  }
+
+  Race run_race(const OrderedTree& candidate) {
     return race(
-        candidates_.size(), probes_.size(),
+        1, probes_.size(),
         [&](std::size_t tree, std::size_t first, std::size_t count) {
-          const OrderedTree& in = tree == 0 ? pool_.baseline().tree : candidates_[tree - 1].tree.tree;
-          return ray_costs(in, triangles_, std::span(probes_).subspan(first, count), rays_.query);
+          if (tree != 0) return traced(candidate, first, count);
+          // What the baseline costs is known from the race before.
+          for (std::size_t at = baseline_costs_.size(); at < first + count; at = baseline_costs_.size()) {
+            const std::vector<double> more = traced(pool_.baseline().tree, at, first + count - at);
+            baseline_costs_.insert(baseline_costs_.end(), more.begin(), more.end());
+          }
+          const auto from = baseline_costs_.begin() + static_cast<std::ptrdiff_t>(first);
+          return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(count));
         },
         options_.race);
   }
 
-  void judge() {
-    const Race race = run_race();
-    decision_.probes = race.rays;
-    decision_.probe_units = race.units;
-    decision_.baseline_cost = race.baseline;
-    decision_.cost = race.baseline;
-    const double fit = pool_.baseline_fit_cost();
-    std::optional<std::size_t> best;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      Trial trial;
-      trial.name = candidates_[i].tree.name;
-      trial.standing = race.standings[i];
-      trial.fit_gain = fit > 0.0 ? 1.0 - candidates_[i].fit_cost / fit : 0.0;
-      trial.price = candidates_[i].tree.build_units +
-                    options_.prices.byte * static_cast<double>(candidates_[i].tree.bytes);
-      trial.saving = rays_.expected * (trial.standing.baseline - trial.standing.cost);
-      const bool pays = trial.standing.verdict == Verdict::kBetter && trial.saving > trial.price;
-      const auto worth = [](const Trial& t) { return t.saving - t.price; };
-      if (pays && (!best || worth(trial) > worth(decision_.trials[*best]))) best = i;
-      decision_.trials.push_back(std::move(trial));
-    }
-    explain(race, best);
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-      const bool kept = best && i == *best;
-      if (!kept && !options_.keep_tried) continue;
-      decision_.trials[i].tree = add(std::move(candidates_[i].tree));
-      if (kept) decision_.tree = decision_.trials[i].tree;
-    }
+  std::vector<double> traced(const OrderedTree& tree, std::size_t first, std::size_t count) {
+    std::vector<double> costs =
+        ray_costs(tree, triangles_, std::span(probes_).subspan(first, count), rays_.query);
+    for (const double cost : costs) decision_.probe_units += options_.prices.trace * cost;
+    return costs;
   }
 
-  void explain(const Race& race, std::optional<std::size_t> best) {
-    if (!best) {
-      const bool dear = race.winner != 0xffffffffU;
+  void explain(const Race& race, const Trial& trial, bool better, bool kept) {
+    decision_.probes = std::max(decision_.probes, race.rays);
+    decision_.baseline_cost = race.baseline;
+    decision_.cost = race.baseline;
+    if (kept) {
+      decision_.kept = trial.name;
+      decision_.cost = trial.standing.cost;
+      decision_.reason = percent(1.0 - trial.standing.cost / trial.standing.baseline) +
+                         " cheaper on probe rays; saves " + number(trial.saving, 0) +
+                         " units for a price of " + number(trial.price, 0);
+    } else if (better) {
+      decision_.reason = trial.name + " is cheaper to trace but does not repay its price over " +
+                         number(rays_.expected, 0) + " rays";
+    } else {
       decision_.reason =
-          dear ? decision_.trials[race.winner].name +
-                     " is cheaper to trace but does not repay its price over " + number(rays_.expected, 0) +
-                     " rays"
-               : "no candidate is surely " + percent(options_.race.least_gain) + " cheaper than the baseline";
-      return;
+          "no candidate is surely " + percent(options_.race.least_gain) + " cheaper than the baseline";
     }
-    const Trial& trial = decision_.trials[*best];
-    decision_.kept = trial.name;
-    decision_.cost = trial.standing.cost * race.baseline / trial.standing.baseline;
-    decision_.reason = percent(1.0 - trial.standing.cost / trial.standing.baseline) +
-                       " cheaper on probe rays; saves " + number(trial.saving, 0) + " units for a price of " +
-                       number(trial.price, 0);
   }
 
   std::span<const Triangle> triangles_;
@@ -168,7 +190,7 @@ class Chooser {
   const PlanOptions& options_;
   PlanPool& pool_;
   std::vector<Ray> probes_;
-  std::vector<PlanPool::Entry> candidates_;
+  std::vector<double> baseline_costs_;  // of the first probes
   std::vector<PlanTree>& trees_;
   Decision decision_;
 };
@@ -200,9 +222,13 @@ void PlanOptions::check() const {
     require(share >= 0.0F && share <= 1.0F, "mixture_share or every_share", std::to_string(share), "[0, 1]");
   SampleMeasure{{1.0F, 1.0F, 1.0F}, prior_share}.check();
   optimise.check();
-  optimise_rays.check();
+  sampled.check();
+  for (const double share : {sample_share, probe_share})
+    require(share >= 0.0 && std::isfinite(share), "sample_share or probe_share", std::to_string(share),
+            "of finite numbers >= 0");
   race.check();
-  for (const double price : {prices.build, prices.pass, prices.segment_test, prices.byte})
+  for (const double price : {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish,
+                             prices.learn, prices.trace, prices.byte})
     require(price >= 0.0 && std::isfinite(price), "prices", std::to_string(price), "of finite numbers >= 0");
 }
 
@@ -227,6 +253,7 @@ Plan make_plan(std::span<const Triangle> triangles, std::span<const PlanRays> ra
     report(progress, rays[i].name, static_cast<double>(i + 1) / static_cast<double>(rays.size() + 1));
     Decision decision = Chooser(triangles, rays[i], options, pool, plan.trees).run();
     plan.planning_units += decision.probe_units;
+    if (decision.tree != 0) plan.kept_units += plan.trees[decision.tree].build_units;
     plan.decisions.push_back(std::move(decision));
   }
   plan.planning_units += pool.work();

@@ -15,6 +15,7 @@
 #include "gnomon/plan/race.h"
 #include "gnomon/plan/ray_sample.h"
 #include "gnomon/tree/build_options.h"
+#include "gnomon/tree/optimise.h"
 
 namespace gnomon {
 
@@ -27,14 +28,17 @@ struct PlanRays {
   double expected = 0.0;   // rays of this kind that will be traced; >= 0
 };
 
-// What work costs beside a box test, in whose units plans reckon. Defaults are rounded from rows of this
-// library on one thread (bench/results): a balanced build of 1e6 triangles takes 520 ms, a pass of
-// reinsertion 23 ms, and a unit of tracing about 6 ns.
+// What work costs beside a box test of a device's tracer, in whose units plans reckon. Defaults are rounded
+// down from the clock of this library (bench/plan_price_bench): such a unit takes 6 ns on one thread.
 struct PlanPrices {
-  double build = 80.0;        // of the balanced builder, a triangle
-  double pass = 4.0;          // of reinsertion by areas, a triangle and pass
-  double segment_test = 1.0;  // of reinsertion by sampled rays
-  double byte = 0.05;         // of a tree that is held beside the baseline
+  double build_start = 80'000.0;  // of the balanced builder, whatever the scene
+  double build = 110.0;           // and a triangle
+  double move_start = 120'000.0;  // of reinsertion by areas, until passes end
+  double move = 140.0;
+  double finish = 7.0;  // of joining leaves, a triangle
+  double learn = 16.0;  // of learning an order of children, a triangle, beside its rays
+  double trace = 3.0;   // of a box test of a plan's own: probes and samples are traced by the reference
+  double byte = 0.05;   // of a tree that is held beside the baseline
 };
 
 // More than the best builder takes: what stands last should be hard to beat.
@@ -48,7 +52,10 @@ struct PlanOptions {
   float every_share = 0.99F;              // the same for Query::kEvery, whose cost that measure is
   float prior_share = 0.25F;              // SampleMeasure's
   OptimiseOptions optimise = thorough();  // passes by areas, the baseline's too; the plan sets face_weights
-  OptimiseOptions optimise_rays = thorough();  // passes by sampled rays
+  SampledOptions sampled;                 // moves by sampled rays; most_work is cut to sample_share
+  // Of the baseline's build, at most: moves by sampled rays; probes, beyond the least there must be. >= 0.
+  double sample_share = 0.6;
+  double probe_share = 0.2;
   RaceOptions race;
   PlanPrices prices;
   std::uint64_t seed = 1;   // of the order in which probes run
@@ -60,17 +67,18 @@ struct PlanOptions {
 
 // "sah": three axes, by surface area, reinsertion by surface area, near child first: the baseline.
 // "sah-order": the same tree, any-hit children in the order learnt from the rays.
+// "sah-rays": reinsertion goes on by sampled rays.
 // "sah-mix": reinsertion goes on by the mixture of surface area and the rays' own measure.
-// "sah-rays": and then by sampled rays.
-// "mix", "mix-rays": built by the mixture from the start.
-// All but "sah" have the learnt order where any hit is asked for; "sah-order" is for any hit only.
+// "mix", "mix-rays": built by the mixture from the start, and then by sampled rays.
+// All but "sah" have the learnt order where any hit is asked for; "sah-order" is for any hit only. "auto"
+// tries "sah-rays", and for any hit "sah-order" where that is not kept.
 [[nodiscard]] const std::vector<std::string>& candidate_names();
 
 // A tree of the plan.
 struct PlanTree {
   std::string name;
   OrderedTree tree;
-  double build_units = 0.0;  // more than the baseline's
+  double build_units = 0.0;  // more than the baseline's: what making it took
   std::uint64_t bytes = 0;   // nodes and leaf order
 };
 
@@ -79,7 +87,7 @@ struct Trial {
   std::string name;
   std::size_t tree = 0;  // place in Plan::trees; 0: not among them
   Standing standing;
-  double fit_gain = 0.0;  // saving on the rays it was fitted to, a share: optimistic
+  double fit_gain = 0.0;  // share of the inner nodes' weight on the fitted rays that is saved: optimistic
   double price = 0.0;     // units it costs beside the baseline: building, memory
   double saving = 0.0;    // units it saves over the expected rays
 };
@@ -103,7 +111,8 @@ struct Plan {
   std::vector<PlanTree> trees;      // the baseline first, then those that are kept
   std::vector<Decision> decisions;  // one for each kind of rays given
   double baseline_units = 0.0;      // building the baseline
-  double planning_units = 0.0;      // building and probing candidates, kept or not
+  double planning_units = 0.0;      // everything beyond that: building and probing candidates
+  double kept_units = 0.0;          // of those, making the trees that are kept
 };
 
 // How the plan has trees built and reinsertion by areas done: in plain C++, or by a device, the same bytes.

@@ -54,6 +54,7 @@ std::string to_json(const Plan& plan) {
   for (const Decision& decision : plan.decisions) decisions.push_back(json_of(decision));
   const Json document = {{"baseline_units", plan.baseline_units},
                          {"planning_units", plan.planning_units},
+                         {"kept_units", plan.kept_units},
                          {"trees", trees},
                          {"decisions", decisions}};
   return document.dump();

@@ -1,7 +1,10 @@
 #include "gnomon/plan/plan_pool.h"
 
+#include <algorithm>
+
 #include "gnomon/plan/child_order.h"
 #include "gnomon/shared/hit_math.h"
+#include "gnomon/shared/measure_math.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/merge_leaves.h"
 
@@ -10,6 +13,9 @@ namespace gnomon {
 namespace {
 
 constexpr std::array<float, 3> kSurface{1.0F, 1.0F, 1.0F};
+
+// Of adding up what a tree's boxes measure, a triangle: a node or two are read.
+constexpr double kTotalPrice = 1.0;
 
 std::uint64_t bytes_of(const Bvh& bvh) {
   return bvh.nodes.size() * sizeof(Node) + bvh.primitives.size() * sizeof(std::uint32_t);
@@ -23,15 +29,19 @@ PlanPool::PlanPool(std::span<const Triangle> triangles, const PlanOptions& optio
   loose_baseline_ = moved(built(kSurface), kSurface);
   baseline_ = {"sah", {merge_leaves(loose_baseline_, face_measures(loose_baseline_, kSurface)), {}}, 0.0, 0};
   baseline_.bytes = bytes_of(baseline_.tree.bvh);
-  baseline_units_ = build_price() + pass_price();
+  baseline_units_ = build_price() + move_price() + for_all(options.prices.finish);
+}
+
+double PlanPool::for_all(double price) const {
+  return price * static_cast<double>(triangles_.size());
 }
 
 double PlanPool::build_price() const {
-  return options_.prices.build * static_cast<double>(triangles_.size());
+  return options_.prices.build_start + for_all(options_.prices.build);
 }
 
-double PlanPool::pass_price() const {
-  return options_.prices.pass * static_cast<double>(triangles_.size()) * options_.optimise.max_passes;
+double PlanPool::move_price() const {
+  return options_.prices.move_start + for_all(options_.prices.move);
 }
 
 Bvh PlanPool::built(const std::array<float, 3>& weights) const {
@@ -48,95 +58,87 @@ Bvh PlanPool::moved(const Bvh& bvh, const std::array<float, 3>& weights) const {
 }
 
 void PlanPool::aim_at(const PlanRays& rays) {
-  loose_.clear();
   query_ = rays.query;
   fit_.clear();
   for (Ray ray : rays.fit) {
     if (gn_ray_is_valid(&ray) != 0) fit_.push_back(ray);
   }
   fit_ = thinned(fit_, options_.fit_rays);
-  segments_ = segments_of(baseline_.tree.bvh, triangles_, fit_, query_);
   weights_ = mixed_weights(fit_, query_ == Query::kEvery ? options_.every_share : options_.mixture_share);
+  expected_cost_ = -1.0;
 }
 
-double PlanPool::expected_cost() const {
+double PlanPool::expected_cost() {
+  if (expected_cost_ >= 0.0) return expected_cost_;
   const Bvh& bvh = baseline_.tree.bvh;
-  if (bvh.nodes.empty()) return 0.0;
-  const std::vector<float> measures = face_measures(bvh, weights_);
+  if (bvh.nodes.empty()) return expected_cost_ = 0.0;
+  work_ += for_all(kTotalPrice);
   double sum = 0.0;
-  for (std::size_t i = 0; i < measures.size(); ++i) {
-    const double step = bvh.nodes[i].count > 0 ? kTriangleCost * bvh.nodes[i].count : 2.0 * kBoxCost;
-    sum += step * double{measures[i]};
+  for (const Node& node : bvh.nodes) {
+    const double step = node.count > 0 ? kTriangleCost * node.count : 2.0 * kBoxCost;
+    sum += step * double{gn_linear_measure(weights_.data(), node.lo, node.hi)};
   }
-  return measures[0] > 0.0F ? sum / double{measures[0]} : sum;
+  const Node& root = bvh.nodes[0];
+  const float measure = gn_linear_measure(weights_.data(), root.lo, root.hi);
+  return expected_cost_ = measure > 0.0F ? sum / double{measure} : sum;
 }
 
-double PlanPool::least_price(const std::string& name) const {
+double PlanPool::likely_price(const std::string& name) {
   if (name == "sah") return 0.0;
-  if (name == "sah-order") return expected_cost() * static_cast<double>(fit_.size());
-  return pass_price() + (name.starts_with("mix") ? build_price() : 0.0);
+  const double rays = options_.prices.trace * expected_cost() * static_cast<double>(fit_.size());
+  double price = query_ == Query::kAny ? for_all(options_.prices.learn) + rays : 0.0;
+  if (name == "sah-order") return price;
+  price += for_all(options_.prices.finish);
+  if (name.starts_with("mix")) price += build_price();
+  if (name.find("mix") != std::string::npos) price += move_price();
+  if (name.ends_with("-rays")) price += rays + options_.sample_share * baseline_units_;
+  return price;
 }
 
-const LooseTree& PlanPool::loose(const std::string& name) {
-  const auto known = loose_.find(name);
-  if (known != loose_.end()) return known->second;
-  return loose_.emplace(name, made(name)).first->second;
+// Moves by sampled rays.
+void PlanPool::fit(const Bvh& from, Entry& entry) {
+  double traced = 0.0;
+  const std::vector<Ray> segments = segments_of(baseline_.tree.bvh, triangles_, fit_, query_, &traced);
+  SampledOptions options = options_.sampled;
+  options.most_work = std::min(options.most_work, options_.sample_share * baseline_units_);
+  SampledTree sampled = optimise_for_rays(from, segments, {weights_, options_.prior_share}, options);
+  entry.tree.tree.bvh = merge_leaves(sampled.bvh, sampled.measures);
+  entry.tree.build_units += options_.prices.trace * traced + sampled.work + for_all(options_.prices.finish);
+  entry.fit_gain = sampled.saved;
 }
 
-LooseTree PlanPool::made(const std::string& name) {
-  LooseTree out;
-  if (name.ends_with("-rays")) {
-    const LooseTree& from = loose(name.substr(0, name.size() - 5) == "sah" ? "sah-mix" : "mix");
-    SampledTree sampled =
-        optimise_for_rays(from.bvh, segments_, {weights_, options_.prior_share}, options_.optimise_rays);
-    const double own = options_.prices.segment_test * static_cast<double>(sampled.segment_tests);
-    work_ += own;
-    out = {std::move(sampled.bvh), std::move(sampled.measures), from.units + own};
-    return out;
-  }
-  const bool anew = name == "mix";
-  out.bvh = moved(anew ? built(weights_) : loose_baseline_, weights_);
-  out.measures = face_measures(out.bvh, weights_);
-  out.units = pass_price() + (anew ? build_price() : 0.0);
-  work_ += out.units;
-  return out;
-}
-
-double PlanPool::fit_cost(OrderedTree& tree, bool learn) {
-  if (learn) {
-    OrderOptions order;
-    order.face_weights = weights_;
-    ChildOrder learnt = learn_order(tree.bvh, triangles_, fit_, order);
-    tree.ranks = std::move(learnt.ranks);
-  }
-  double sum = 0.0;
-  for (const double cost : ray_costs(tree, triangles_, fit_, query_)) sum += cost;
-  work_ += sum;
-  return fit_.empty() ? 0.0 : sum / static_cast<double>(fit_.size());
+void PlanPool::learn(PlanTree& tree) {
+  OrderOptions order;
+  order.face_weights = weights_;
+  ChildOrder learnt = learn_order(tree.tree.bvh, triangles_, fit_, order);
+  tree.tree.ranks = std::move(learnt.ranks);
+  tree.build_units += for_all(options_.prices.learn) + options_.prices.trace * learnt.work;
+  tree.bytes += tree.tree.ranks.size() * sizeof(float);
 }
 
 PlanPool::Entry PlanPool::make(const std::string& name) {
   Entry entry;
   entry.tree.name = name;
+  Bvh& bvh = entry.tree.tree.bvh;
+  const bool mixed = name.find("mix") != std::string::npos;
   if (name == "sah" || name == "sah-order") {
-    entry.tree.tree.bvh = baseline_.tree.bvh;
+    bvh = baseline_.tree.bvh;
+  } else if (name == "sah-rays") {
+    fit(loose_baseline_, entry);
   } else {
-    const LooseTree& from = loose(name);
-    entry.tree.tree.bvh = merge_leaves(from.bvh, from.measures);
-    entry.tree.build_units = from.units;
-    entry.tree.bytes = bytes_of(entry.tree.tree.bvh);
+    const Bvh loose = moved(name == "sah-mix" ? loose_baseline_ : built(weights_), weights_);
+    entry.tree.build_units = move_price() + (name == "sah-mix" ? 0.0 : build_price());
+    if (name == "mix-rays") {
+      fit(loose, entry);
+    } else {
+      bvh = merge_leaves(loose, face_measures(loose, weights_));
+      entry.tree.build_units += for_all(options_.prices.finish);
+    }
   }
-  const bool learn = query_ == Query::kAny && name != "sah";
-  entry.fit_cost = fit_cost(entry.tree.tree, learn);
-  if (learn) {
-    entry.tree.build_units += entry.fit_cost * static_cast<double>(fit_.size());
-    entry.tree.bytes += entry.tree.tree.ranks.size() * sizeof(float);
-  }
+  if (mixed || name == "sah-rays") entry.tree.bytes = bytes_of(bvh);
+  if (query_ == Query::kAny && name != "sah") learn(entry.tree);
+  work_ += entry.tree.build_units;
   return entry;
-}
-
-double PlanPool::baseline_fit_cost() {
-  return fit_cost(baseline_.tree, false);
 }
 
 }  // namespace gnomon

@@ -21,8 +21,16 @@ std::vector<Ray> thinned(std::span<const Ray> rays, std::uint64_t count) {
   return out;
 }
 
+namespace {
+
+double cost_of(const GnRayCounters& count) {
+  return count.boxes == 0 ? 0.0 : kBoxCost * (count.boxes - 1.0) + kTriangleCost * count.triangles;
+}
+
+}  // namespace
+
 std::vector<Ray> segments_of(const Bvh& bvh, std::span<const Triangle> triangles, std::span<const Ray> rays,
-                             Query query) {
+                             Query query, double* cost) {
   std::vector<Ray> out;
   out.reserve(rays.size());
   const ReferenceTrace trace =
@@ -31,6 +39,7 @@ std::vector<Ray> segments_of(const Bvh& bvh, std::span<const Triangle> triangles
     Ray ray = rays[i];
     if (gn_ray_is_valid(&ray) == 0) continue;
     if (query == Query::kClosest && trace.hits[i].primitive != GN_NONE) ray.tmax = trace.hits[i].t;
+    if (query == Query::kClosest && cost != nullptr) *cost += cost_of(trace.counters[i]);
     ray.tmin = gn_finite_tmin(ray.tmin);
     ray.tmax = gn_finite_tmax(ray.tmax);
     out.push_back(ray);
@@ -71,8 +80,7 @@ std::vector<double> ray_costs(const OrderedTree& tree, std::span<const Triangle>
   }
   std::vector<double> out;
   out.reserve(rays.size());
-  for (const GnRayCounters& count : counters)
-    out.push_back(count.boxes == 0 ? 0.0 : kBoxCost * (count.boxes - 1.0) + kTriangleCost * count.triangles);
+  for (const GnRayCounters& count : counters) out.push_back(cost_of(count));
   return out;
 }
 

@@ -25,9 +25,9 @@ enum class Query : std::uint32_t {
 [[nodiscard]] std::vector<Ray> thinned(std::span<const Ray> rays, std::uint64_t count);
 
 // Each ray as far as its query looks: closest ones end at their hit in `bvh`, others keep their range.
-// Rays that are not traceable are left out.
+// Rays that are not traceable are left out. cost: what tracing took is added, as ray_costs reckons.
 [[nodiscard]] std::vector<Ray> segments_of(const Bvh& bvh, std::span<const Triangle> triangles,
-                                           std::span<const Ray> rays, Query query);
+                                           std::span<const Ray> rays, Query query, double* cost = nullptr);
 
 inline constexpr double kBoxCost = 1.0;
 inline constexpr double kTriangleCost = 1.2;

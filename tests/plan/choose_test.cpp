@@ -80,7 +80,8 @@ TEST_CASE("what a plan keeps is cheaper on rays it has not seen, and sound") {
 TEST_CASE("where few rays come nothing but the baseline is made") {
   const Plan plan = gnomon::make_plan(cottage().triangles, both_kinds(100.0));
   REQUIRE(plan.trees.size() == 1);
-  REQUIRE(plan.planning_units == 0.0);
+  REQUIRE(plan.planning_units < 0.02 * plan.baseline_units);  // totals alone
+  REQUIRE(plan.kept_units == 0.0);
   for (const gnomon::Decision& decision : plan.decisions) {
     REQUIRE(decision.kept == "sah");
     REQUIRE(decision.trials.empty());
@@ -109,6 +110,39 @@ TEST_CASE("rays that nothing can be done for keep the baseline") {
   CAPTURE(to_json(plan));
   REQUIRE(plan.decisions[0].kept == "sah");
   REQUIRE_THAT(plan.decisions[0].reason, Catch::Contains("no candidate"));
+  REQUIRE(plan.kept_units == 0.0);
+}
+
+TEST_CASE("planning takes no more than its shares of the baseline's build") {
+  const auto rays = both_kinds(kMany);
+  PlanOptions options;
+  for (const double share : {0.0, 0.02, 0.5}) {
+    CAPTURE(share);
+    options.sample_share = share;
+    const Plan plan = gnomon::make_plan(cottage().triangles, rays, options);
+    REQUIRE(plan.kept_units <= plan.planning_units);
+    const double beside = plan.planning_units - plan.kept_units;
+    double probes = 0.0;
+    for (const gnomon::Decision& decision : plan.decisions) probes += decision.probe_units;
+    if (plan.decisions[0].kept != "sah" && plan.decisions[1].kept == "sah-rays")
+      REQUIRE(beside - probes < 0.02 * plan.baseline_units);
+    REQUIRE(plan.planning_units < (2.0 * share + 1.5) * plan.baseline_units);
+  }
+  // The fewest probes there may be.
+  options.probe_share = 0.0;
+  for (const gnomon::Decision& decision : gnomon::make_plan(cottage().triangles, rays, options).decisions)
+    REQUIRE(decision.probes <= options.race.least);
+}
+
+TEST_CASE("where sampled rays bring nothing, any hit still gets its order") {
+  PlanOptions options;
+  options.sampled.least_saved = 1e6F;  // no move
+  const Plan plan = gnomon::make_plan(cottage().triangles, both_kinds(kMany), options);
+  REQUIRE(plan.decisions[0].kept == "sah");
+  REQUIRE(plan.decisions[0].probes == 0);
+  REQUIRE_THAT(plan.decisions[0].reason, Catch::Contains("sampled rays save"));
+  REQUIRE(plan.decisions[1].kept == "sah-order");
+  REQUIRE(plan.decisions[1].trials.size() == 2);
 }
 
 TEST_CASE("a choice by name is kept without a test") {
@@ -136,12 +170,13 @@ TEST_CASE("plans are the same again, and JSON tells all of them") {
   REQUIRE(to_json(gnomon::make_plan(cottage().triangles, rays, options)) == text);
   const auto json = nlohmann::json::parse(text);
   REQUIRE(json["trees"].size() == plan.trees.size());
-  REQUIRE(json["trees"].size() == 1 + 4 + 5);
+  REQUIRE(json["trees"].size() == 1 + 1 + 1);
+  REQUIRE(json["kept_units"].get<double>() == Approx(plan.kept_units));
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& decision = json["decisions"][i];
     REQUIRE(decision["kept"] == plan.decisions[i].kept);
     REQUIRE(decision["reason"] == plan.decisions[i].reason);
-    REQUIRE(decision["trials"].size() == 4 + i);
+    REQUIRE(decision["trials"].size() == 1);
     REQUIRE(decision["trials"][0]["probes"].get<std::uint64_t>() >= 128);
   }
 }
@@ -166,7 +201,10 @@ TEST_CASE("plan options out of range are refused") {
   options.mixture_share = -1.0F;
   REQUIRE_THROWS_WITH(options.check(), Catch::Contains("mixture_share"));
   options = {};
-  options.prices.pass = -1.0;
+  options.sample_share = -1.0;
+  REQUIRE_THROWS_WITH(options.check(), Catch::Contains("sample_share"));
+  options = {};
+  options.prices.trace = -1.0;
   REQUIRE_THROWS_WITH(options.check(), Catch::Contains("prices"));
   auto rays = both_kinds(-1.0);
   REQUIRE_THROWS_WITH(gnomon::make_plan(cottage().triangles, rays),

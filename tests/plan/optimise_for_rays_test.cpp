@@ -8,12 +8,14 @@
 #include "gnomon/shared/measure_math.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/bvh_check.h"
+#include "gnomon/tree/optimise.h"
 #include "support/bundles.h"
 #include "support/shapes.h"
 
 using gnomon::Bvh;
 using gnomon::optimise_for_rays;
 using gnomon::OptimiseOptions;
+using gnomon::SampledOptions;
 using gnomon::SampledTree;
 using gnomon::SampleMeasure;
 
@@ -30,6 +32,14 @@ OptimiseOptions every_node() {
   options.share = 1.0F;
   options.max_passes = 20;
   options.least_gain = 0.0F;
+  return options;
+}
+
+// Each node that a segment meets, and each move that brings anything.
+SampledOptions every_move() {
+  SampledOptions options;
+  options.least_met = 1;
+  options.least_saved = 0.0F;
   return options;
 }
 
@@ -68,7 +78,7 @@ TEST_CASE("trees optimised for rays are sound, whatever the input") {
   for (const auto& [name, triangles] : gnomon::test::awkward_inputs()) {
     CAPTURE(name);
     const Bvh before = gnomon::build_reference(triangles, single_leaves());
-    OptimiseOptions options = every_node();
+    SampledOptions options = every_move();
     options.max_depth = single_leaves().median_depth + 2;
     const SampledTree after = optimise_for_rays(before, segments, {}, options);
     if (const auto fault = gnomon::check_bvh(after.bvh, triangles, single_leaves())) FAIL(fault->what);
@@ -83,20 +93,84 @@ TEST_CASE("a node weighs the share of segments that meet it and its part of the 
     CAPTURE(count);
     const auto segments = gnomon::test::random_rays(count, 63);
     const SampleMeasure measure{{0.2F, 1.0F, 3.0F}, 0.25F};
-    const SampledTree after = optimise_for_rays(before, segments, measure, every_node());
+    const SampledTree after = optimise_for_rays(before, segments, measure, every_move());
     const auto expected = plain_measures(after.bvh, segments, measure);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       CAPTURE(i);
       REQUIRE(after.measures[i] == Approx(expected[i]).epsilon(1e-5));
     }
-    // What is minimised falls, and by more than reinsertion by the areas alone brings.
+    // What is minimised falls, as much as is said, and by more than reinsertion by the areas alone brings.
     OptimiseOptions by_areas = every_node();
     by_areas.face_weights = measure.face_weights;
     const Bvh other = gnomon::optimise_reference(before, by_areas);
     const double reached = weight_of(after.bvh, after.measures);
-    REQUIRE(reached < 0.98 * weight_of(before, plain_measures(before, segments, measure)));
+    const double start = weight_of(before, plain_measures(before, segments, measure));
+    REQUIRE(reached < 0.98 * start);
     REQUIRE(reached < weight_of(other, plain_measures(other, segments, measure)));
+    REQUIRE(weight_of(after.bvh, expected) == Approx(reached).epsilon(1e-5));
   }
+}
+
+TEST_CASE("moves save what they say, and the dearest go first") {
+  const auto triangles = gnomon::test::soup(800, 67);
+  const Bvh before = gnomon::build_reference(triangles, single_leaves());
+  const auto segments = gnomon::test::random_rays(200, 68);
+  const SampleMeasure measure{{1.0F, 2.0F, 0.5F}, 0.5F};
+  const auto weight = [&](const Bvh& bvh) { return weight_of(bvh, plain_measures(bvh, segments, measure)); };
+  const double start = weight(before);
+  double saved = -1.0;
+  double work = -1.0;
+  for (const double share : {0.0, 0.6, 0.8, 1.0}) {
+    CAPTURE(share);
+    SampledOptions options = every_move();
+    const double whole = optimise_for_rays(before, segments, measure, options).work;
+    options.most_work = share * whole;
+    const SampledTree after = optimise_for_rays(before, segments, measure, options);
+    // Below the nodes that no segment meets weights are areas', which moves do not touch.
+    REQUIRE(start - weight(after.bvh) == Approx(after.saved * start).margin(0.02 * start));
+    REQUIRE(after.saved > saved);
+    REQUIRE(after.work > work);
+    REQUIRE(after.work < 1.05 * whole);
+    saved = after.saved;
+    work = after.work;
+    if (const auto fault = gnomon::check_bvh(after.bvh, triangles, single_leaves())) FAIL(fault->what);
+  }
+  REQUIRE(saved > 0.02);
+}
+
+TEST_CASE("nodes that few segments meet stay as they are") {
+  const auto triangles = gnomon::test::soup(500, 69);
+  const Bvh before = gnomon::build_reference(triangles, single_leaves());
+  const auto segments = gnomon::test::random_rays(64, 70);
+  SampledOptions options = every_move();
+  options.least_met = 65;
+  REQUIRE(gnomon::tree_hash(optimise_for_rays(before, segments, {}, options).bvh) ==
+          gnomon::tree_hash(before));
+  options = every_move();
+  options.least_saved = 1e6F;
+  REQUIRE(gnomon::tree_hash(optimise_for_rays(before, segments, {}, options).bvh) ==
+          gnomon::tree_hash(before));
+  REQUIRE(gnomon::tree_hash(optimise_for_rays(before, {}, {}, every_move()).bvh) ==
+          gnomon::tree_hash(before));
+  REQUIRE(gnomon::tree_hash(optimise_for_rays(before, segments, {}, every_move()).bvh) !=
+          gnomon::tree_hash(before));
+}
+
+TEST_CASE("a tree that would become too deep stays as it is") {
+  const auto triangles = gnomon::test::soup(400, 71);
+  const Bvh before = gnomon::build_reference(triangles, single_leaves());
+  const auto segments = gnomon::test::random_rays(128, 72);
+  const auto depth = [](const Bvh& bvh) { return gnomon::stats_of(bvh, single_leaves()).max_depth; };
+  const SampledTree free = optimise_for_rays(before, segments, {}, every_move());
+  REQUIRE(depth(free.bvh) > depth(before));
+  SampledOptions options = every_move();
+  options.max_depth = depth(before);
+  const SampledTree held = optimise_for_rays(before, segments, {}, options);
+  REQUIRE(gnomon::tree_hash(held.bvh) == gnomon::tree_hash(before));
+  REQUIRE(held.saved == 0.0);
+  options.max_depth = depth(free.bvh);
+  REQUIRE(gnomon::tree_hash(optimise_for_rays(before, segments, {}, options).bvh) ==
+          gnomon::tree_hash(free.bvh));
 }
 
 TEST_CASE("the rays a tree was optimised for have less to do, and hit the same") {
@@ -113,7 +187,7 @@ TEST_CASE("the rays a tree was optimised for have less to do, and hit the same")
   const Bvh before =
       gnomon::optimise_reference(gnomon::build_reference(triangles, single_leaves()), every_node());
   const auto segments = gnomon::segments_of(before, triangles, rays, gnomon::Query::kClosest);
-  const SampledTree after = optimise_for_rays(before, segments, {}, every_node());
+  const SampledTree after = optimise_for_rays(before, segments, {}, every_move());
   const auto sum = [&](const Bvh& bvh) {
     double all = 0.0;
     for (const double cost : gnomon::ray_costs({bvh, {}}, triangles, rays, gnomon::Query::kClosest))
@@ -172,5 +246,17 @@ TEST_CASE("sample measures out of range are refused") {
   const Bvh bvh = gnomon::build_reference(gnomon::test::soup(10, 66));
   REQUIRE_THROWS_WITH(optimise_for_rays(bvh, {}, {{1, 1, 1}, 0.0F}), Catch::Contains("prior_share"));
   REQUIRE_THROWS_WITH(optimise_for_rays(bvh, {}, {{1, -1, 1}, 1.0F}), Catch::Contains("face_weights"));
+  SampledOptions options;
+  options.least_met = 0;
+  REQUIRE_THROWS_WITH(options.check(), Catch::Contains("least_met"));
+  options = {};
+  options.least_saved = -1.0F;
+  REQUIRE_THROWS_WITH(options.check(), Catch::Contains("least_saved"));
+  options = {};
+  options.most_work = NAN;
+  REQUIRE_THROWS_WITH(options.check(), Catch::Contains("most_work"));
+  options = {};
+  options.max_depth = 129;
+  REQUIRE_THROWS_WITH(options.check(), Catch::Contains("max_depth"));
   REQUIRE(optimise_for_rays({}, {}, {}).bvh.nodes.empty());
 }

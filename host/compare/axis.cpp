@@ -12,11 +12,19 @@ constexpr double kRoom = 1.08;        // factor beyond the outermost values
 constexpr double kLeastRange = 1.25;  // of hi / lo: less would blow noise up
 constexpr int kMostTicks = 7;
 
-std::string shortest(double value) {
+std::string in_form(double value, std::chars_format form) {
   std::array<char, 40> text{};
-  const auto [end, error] =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4);
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value, form, 4);
   return {text.data(), end};
+}
+
+// Of four digits and without zeros before or behind that say nothing: 0.0015, 1.5e-4. A label beside an
+// axis has room for six letters.
+std::string shortest(double value) {
+  std::string text = in_form(value, std::chars_format::general);
+  if (value >= 1e-3 || value <= 0.0) return text;
+  const int power = static_cast<int>(std::floor(std::log10(value) + 1e-9));
+  return in_form(value / std::pow(10.0, power), std::chars_format::general) + "e" + std::to_string(power);
 }
 
 }  // namespace

@@ -18,16 +18,23 @@ constexpr double kScatterBottom = 250.0;
 constexpr double kZeroRow = 62.0;
 constexpr double kLetterRadius = 8.0;
 constexpr double kLetterGap = 16.5;
+constexpr double kLetterWidth = 8.3;  // of a digit in DejaVu Sans, the widest of the usual fonts
+
+double width_of(const std::string& text) {
+  return kLetterWidth * static_cast<double>(text.size());
+}
 
 void x_axis(Svg& svg, const LogAxis& axis, double top, double bottom, const std::string& label) {
   double last = -1e9;
   for (const LogAxis::Tick& tick : axis.ticks()) {
     const double x = axis.at(tick.value);
     svg.line(x, top, x, bottom, "grid");
-    // Labels that would run into each other are left out.
-    if (x - last < 7.6 * static_cast<double>(tick.text.size()) + 8.0) continue;
-    svg.text(x, bottom + 16.0, tick.text, Anchor::kMiddle, "soft");
-    last = x;
+    // Labels that would run into each other are left out, and those at the ends stay inside the picture.
+    const double half = 0.5 * width_of(tick.text);
+    const double middle = std::clamp(x, half, kChartWidth - half);
+    if (middle - last < 2.0 * half + 8.0) continue;
+    svg.text(middle, bottom + 16.0, tick.text, Anchor::kMiddle, "soft");
+    last = middle;
   }
   svg.line(axis.from(), bottom, axis.to(), bottom, "axis");
   svg.text(axis.to(), bottom + 34.0, label + " →", Anchor::kEnd, "soft");
@@ -37,7 +44,8 @@ void y_axis(Svg& svg, const LogAxis& axis, double left, double right, const std:
   for (const LogAxis::Tick& tick : axis.ticks()) {
     const double y = axis.at(tick.value);
     svg.line(left, y, right, y, "grid");
-    svg.text(left - 6.0, y + 4.0, tick.text, Anchor::kEnd, "soft");
+    // A label of more letters than there is room for begins at the picture's edge.
+    svg.text(std::max(left - 6.0, width_of(tick.text)), y + 4.0, tick.text, Anchor::kEnd, "soft");
   }
   svg.text(2.0, 14.0, "↑ " + label, Anchor::kStart, "soft");
 }
@@ -50,7 +58,7 @@ std::string color_of(std::size_t index) {
 double legend(Svg& svg, const std::vector<std::string>& names, double y) {
   double x = 8.0;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const double width = 28.0 + 7.6 * static_cast<double>(names[i].size());
+    const double width = 28.0 + width_of(names[i]);
     if (x > 8.0 && x + width > kChartWidth) {
       x = 8.0;
       y += 18.0;

@@ -125,7 +125,7 @@ std::vector<std::array<double, 2>> points_of(const std::string& page) {
 }
 
 void check_all(const json& seen) {
-  CAPTURE(seen.dump(1));
+  CAPTURE(seen.at("texts_outside").dump(), seen.dump(1));
   REQUIRE(seen.at("problems").empty());
   for (const char* chart :
        {"pareto-accuracy", "pareto-memory", "gain", "build-trace", "break-even", "boxes", "triangles",

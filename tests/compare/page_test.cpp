@@ -1,6 +1,8 @@
 // The page, its charts and the files beside it, as functions of a report.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 
 #include "gnomon/base/error.h"
@@ -156,6 +158,38 @@ TEST_CASE("letters never cover each other, and a lone one stays on its point") {
   }
 }
 
+TEST_CASE("texts stay inside the picture, wherever ticks fall") {
+  const std::regex text(
+      R"re(<text x="([-0-9.]+)" y="[-0-9.]+"(?: text-anchor="(\w+)")?[^>]*>([^<]*)</text>)re");
+  std::size_t seen = 0;
+  for (int k = 0; k < 400; ++k) {
+    // Ranges from a part of a decade to many of them, small numbers and large ones.
+    const double lo = std::pow(10.0, -9.0 + 0.0425 * k);
+    const double hi = lo * (1.01 + 0.13 * (k % 37) + std::pow(10.0, k % 11) - 1.0);
+    Scatter scatter;
+    scatter.x_label = scatter.y_label = "error";
+    scatter.dots = {{"A", 0, lo, lo, ""}, {"B", 1, hi, hi, ""}};
+    RowPlot rows;
+    rows.x_label = "error";
+    rows.rows = {{"A", {{0, lo, lo, lo, ""}, {0, hi, hi, hi, ""}}, ""}};
+    for (const Svg& svg : {draw(scatter), draw(rows)}) {
+      const std::string drawn = svg.file("t");
+      for (std::sregex_iterator it(drawn.begin(), drawn.end(), text), end; it != end; ++it, ++seen) {
+        const double width = 8.3 * static_cast<double>((*it)[3].length());  // digits of DejaVu Sans
+        const std::string anchor = (*it)[2];
+        const double left = std::stod((*it)[1]) - (anchor == "middle" ? 0.5 * width
+                                                   : anchor == "end"  ? width
+                                                                      : 0.0);
+        CAPTURE(lo, hi, it->str());
+        if (it->str().find("\"letter\"") != std::string::npos) continue;  // placed by the group around it
+        REQUIRE(left >= -2.0);
+        REQUIRE(left + width <= kChartWidth + 2.0);
+      }
+    }
+  }
+  CHECK(seen > 4000);
+}
+
 TEST_CASE("a logarithmic axis holds its values and labels round numbers in between") {
   const std::vector<std::vector<double>> ranges{{1.0},      {0.97, 1.02}, {1e-9, 1e12}, {3.0, 40.0},
                                                 {0.0, 5.0}, {},           {1e6, 1.1e6}};
@@ -179,6 +213,10 @@ TEST_CASE("a logarithmic axis holds its values and labels round numbers in betwe
   CHECK(tick_text(0.5) == "0.5");
   CHECK(tick_text(20000.0) == "20k");
   CHECK(tick_text(1.5e6) == "1.5M");
+  CHECK(tick_text(0.002) == "0.002");
+  CHECK(tick_text(0.0001) == "1e-4");
+  CHECK(tick_text(0.00015) == "1.5e-4");
+  CHECK(tick_text(7e-13) == "7e-13");
 }
 
 TEST_CASE("numbers are written for people") {

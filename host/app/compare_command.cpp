@@ -90,6 +90,10 @@ void add_compare_command(CLI::App& program, OutputOptions& output, Action& actio
       ->check(CLI::IsMember({"wall", "cpu"}))
       ->type_name("CLOCK")
       ->capture_default_str();
+  command
+      ->add_option("--rows", options->rows,
+                   "append the rows to this file, one a line, as `gnomon rows` and bench/results keep them")
+      ->type_name("FILE");
   command->add_flag("--afresh", options->afresh, "do not go on from rows that are there already");
   command->add_flag("--no-cache", options->no_cache,
                     "keep no compiled kernels on disk and take none from there");

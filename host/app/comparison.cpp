@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 
 #include "device_choice.h"
 #include "document.h"
 #include "embree_methods.h"
 #include "exit_status.h"
+#include "gnomon/compare/across.h"
 #include "gnomon/compare/analysis.h"
 #include "numbers.h"
+#include "plan_rays.h"
 #include "report_files.h"
 #include "version.h"
 
@@ -122,9 +125,13 @@ class Comparison {
     const Scene scene = load_scene(options_.scene, console_);
     report_ = start_report(options_, scene);
     go_on_from_file();
-    const double share = options_.run.seconds / static_cast<double>(devices_.size());
+    // Several devices share the time, and the contest between them has a share, too.
+    const std::size_t shares = devices_.size() > 1 ? devices_.size() + 1 : 1;
+    const double share = options_.run.seconds / static_cast<double>(shares);
     for (const cl::DeviceInfo& info : devices_) run_on(info, scene, share);
+    if (devices_.size() > 1) set_beside_each_other(scene, share);
     const std::size_t charts = files_.write_all(report_);
+    if (!options_.rows.empty()) append_rows(options_.rows, report_);
     tell(charts);
     return judge_ours();
   }
@@ -142,23 +149,53 @@ class Comparison {
     console_.note("going on from " + files_.rows().string() + " (--afresh measures anew)");
   }
 
-  void run_on(const cl::DeviceInfo& info, const Scene& scene, double seconds) {
+  [[nodiscard]] cl::ContextOptions how_to_open() const {
+    cl::ContextOptions how;
+    how.use_cache = !options_.no_cache;
+    return how;
+  }
+
+  void set_beside_each_other(const Scene& scene, double seconds) {
+    std::vector<std::unique_ptr<cl::Context>> contexts;
+    std::vector<compare::AcrossDevice> devices;
+    for (const cl::DeviceInfo& info : devices_) {
+      compare::DeviceReport* const report = &report_.devices[place_of(info)];
+      if (std::any_of(devices.begin(), devices.end(),
+                      [&](const auto& known) { return known.report == report; }))
+        continue;
+      contexts.push_back(std::make_unique<cl::Context>(info, how_to_open()));
+      devices.push_back({contexts.back().get(), report});
+    }
+    compare::RunOptions run = options_.run;
+    run.seconds = seconds;
+    compare::run_across(
+        devices, scene, run, [this] { files_.keep_rows(report_); }, console_.progress());
+  }
+
+  // Of the device in the report; a new one at its end.
+  std::size_t place_of(const cl::DeviceInfo& info) {
     const auto found = std::find_if(report_.devices.begin(), report_.devices.end(), [&](const auto& device) {
       return device.name == info.name && device.driver == info.driver &&
              device.platform == info.platform_name;
     });
     const auto place = static_cast<std::size_t>(found - report_.devices.begin());
     if (found == report_.devices.end()) report_.devices.push_back(start_device(info));
-    cl::ContextOptions how;
-    how.use_cache = !options_.no_cache;
-    const cl::Context context(info, how);
-    std::vector<compare::Method> methods = compare::own_methods(context, scene);
+    return place;
+  }
+
+  void run_on(const cl::DeviceInfo& info, const Scene& scene, double seconds) {
+    const std::size_t place = place_of(info);
+    const cl::Context context(info, how_to_open());
+    std::vector<compare::Method> methods = compare::own_methods(
+        context, scene, {options_.run.kinds, options_.run.seed, device_builder(context)});
     // Peers come before methods that compile kernels of their own: where time is short, those are left out.
     std::vector<compare::Method> peers = embree_methods(info, scene);
     methods.insert(methods.begin() + compare::kFirstMethods, std::make_move_iterator(peers.begin()),
                    std::make_move_iterator(peers.end()));
     compare::RunOptions run = options_.run;
     run.seconds = seconds;
+    run.at_size = at_sizes(options_.scene);
+    run.plan = device_builder(context);
     compare::run_device(
         context, scene, methods, run, report_.devices[place], [this] { files_.keep_rows(report_); },
         console_.progress());

@@ -20,6 +20,7 @@ struct CompareOptions {
   std::string time = "150s";
   std::string clock = "wall";
   std::string page = "report.html";
+  std::string rows;  // a file that rows are appended to; empty: none
   bool afresh = false;
 };
 

@@ -51,6 +51,12 @@ std::size_t ReportFiles::write_all(const compare::Report& report) const {
   return charts.size();
 }
 
+void append_rows(const std::string& file, const compare::Report& report) {
+  std::ofstream out(file, std::ios::binary | std::ios::app);
+  out << to_rows_text(report);
+  if (!out.flush()) throw Error(ErrorCode::kIo, "cannot write " + file + "; is its folder there?");
+}
+
 fs::path ReportFiles::with(const std::string& ending) const {
   return page_.parent_path() / (page_.stem().string() + ending);
 }

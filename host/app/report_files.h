@@ -28,4 +28,7 @@ class ReportFiles {
   std::filesystem::path page_;
 };
 
+// Appends the report as rows, one a line. Throws Error{kIo}.
+void append_rows(const std::string& file, const compare::Report& report);
+
 }  // namespace gnomon::app

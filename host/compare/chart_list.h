@@ -22,5 +22,7 @@ struct ChartList {
 void add_time_charts(ChartList& list);
 // Boxes and triangles a ray, predictions, errors.
 void add_work_charts(ChartList& list);
+// Times by triangles, gains by light.
+void add_scene_charts(ChartList& list);
 
 }  // namespace gnomon::compare

@@ -25,6 +25,7 @@ std::vector<Chart> charts_of(const Report& report, const DeviceReport& device) {
   ChartList list{report, device, {}};
   add_time_charts(list);
   add_work_charts(list);
+  add_scene_charts(list);
   return std::move(list.charts);
 }
 

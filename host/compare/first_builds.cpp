@@ -32,8 +32,9 @@ class FirstBuilds {
       if (!wanted(run_.options, name) || (contest_held && !has_row(run_.report, name))) continue;
       run_.tell("first build of " + name, share);
       const double begun = run_.spent();
+      const double mean = run_.entered.empty() ? 0.0 : entering / static_cast<double>(run_.entered.size());
       const double expected =
-          run_.entered.empty() ? 0.0 : entering / static_cast<double>(run_.entered.size());
+          std::max(mean, method.builds > 1.0 && !contest_held ? method.builds * baseline_build() : 0.0);
       if (begun + expected > kFirstBuildShare * run_.options.seconds && name != kBaseline && !contest_held) {
         run_.leave_out(name, "build", "no time" + run_.budget());
         continue;
@@ -53,6 +54,15 @@ class FirstBuilds {
   }
 
  private:
+  // Seconds of one with its kernels compiled.
+  [[nodiscard]] double baseline_build() const {
+    if (run_.baseline == nullptr) return 0.0;
+    const double begun = run_.spent();
+    run_.baseline->build({});
+    run_.baseline->forget_tree();
+    return run_.spent() - begun;
+  }
+
   void examine(Entered& entered) {
     const MethodFacts& facts = entered.method->facts;
     DeviceReport& report = run_.report;
@@ -67,6 +77,10 @@ class FirstBuilds {
     BuildRow row = entered.entrant->facts();
     row.method = facts.name;
     report.builds.push_back(std::move(row));
+    for (DecisionRow& decision : entered.entrant->decisions()) {
+      decision.method = facts.name;
+      report.decisions.push_back(std::move(decision));
+    }
     predict(entered);
     entered.entrant->forget_tree();
     run_.finish(step);

@@ -27,6 +27,8 @@ class Run {
       time_traces(run_, kind);
       judge(kind);
     }
+    time_sizes(run_);
+    count_areas(run_);
     pictures();
     run_.report.complete = true;
     run_.keep();

@@ -44,7 +44,8 @@ double RunState::deadline(double weight, double weights_left) const {
 }
 
 double RunState::weights_from(std::size_t kind) const {
-  return static_cast<double>(options.kinds.size() - kind) * (kTraceWeight + kJudgeWeight) + kPictureWeight;
+  return static_cast<double>(options.kinds.size() - kind) * (kTraceWeight + kJudgeWeight) + kSizesWeight +
+         kAreasWeight + kPictureWeight;
 }
 
 std::size_t RunState::place_of(const std::string& kind) const {

@@ -21,6 +21,8 @@ struct Entered {
 inline constexpr double kBuildWeight = 6.0;
 inline constexpr double kTraceWeight = 2.0;  // each kind
 inline constexpr double kJudgeWeight = 1.0;  // each kind
+inline constexpr double kSizesWeight = 2.0;
+inline constexpr double kAreasWeight = 2.0;
 inline constexpr double kPictureWeight = 1.0;
 
 class RunState {
@@ -68,5 +70,7 @@ Row& row_of(std::vector<Row>& rows, const std::string& method) {
 void enter_methods(RunState& run, const std::vector<Method>& methods);
 void time_builds(RunState& run);
 void time_traces(RunState& run, const std::string& kind);
+void time_sizes(RunState& run);
+void count_areas(RunState& run);
 
 }  // namespace gnomon::compare

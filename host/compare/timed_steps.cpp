@@ -18,6 +18,14 @@ std::uint64_t fitting_count(RunState& run, const Batch& few, double until) {
   return std::max<std::uint64_t>(count, std::min(kMinRays, run.options.ray_count));
 }
 
+void say_who_sat_out(RunState& run, const std::string& step, const std::vector<Contestant>& contest) {
+  for (std::size_t i = 0; i < contest.size(); ++i) {
+    if (contest[i].rounds.wall_s.size() < contest.front().rounds.wall_s.size())
+      run.leave_out(run.entered[i].method->facts.name, step,
+                    "one round: it takes more than half of one, and all would not fit" + run.budget());
+  }
+}
+
 TraceRow trace_row(Entered& entered, const Batch& batch, const Rounds& rounds) {
   TraceRow row;
   row.method = entered.method->facts.name;
@@ -47,6 +55,7 @@ void time_builds(RunState& run) {
   run_contest(contest, run.options.rounds, run.deadline(kBuildWeight, kBuildWeight + run.weights_from(0)),
               wall_now, [&](int done, int most) { run.tell("builds", static_cast<double>(done) / most); });
   run.say_rounds("builds", contest.front().rounds.wall_s.size());
+  say_who_sat_out(run, "builds", contest);
   for (std::size_t i = 0; i < run.entered.size(); ++i)
     row_of(run.report.builds, run.entered[i].method->facts.name).rounds = contest[i].rounds;
   run.finish("builds");
@@ -76,6 +85,7 @@ void time_traces(RunState& run, const std::string& kind) {
   run_contest(contest, run.options.rounds, until, wall_now,
               [&](int done, int most) { run.tell(step, static_cast<double>(done) / most); });
   run.say_rounds(step, contest.front().rounds.wall_s.size());
+  say_who_sat_out(run, step, contest);
   std::vector<TraceRow> rows;
   for (std::size_t i = 0; i < run.entered.size(); ++i) {
     rows.push_back(trace_row(run.entered[i], batch, contest[i].rounds));

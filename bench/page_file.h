@@ -1,4 +1,4 @@
-// What makes a page from rows, or checks one: shared by failure_map_page and ray_aware_page.
+// What makes pages from rows, or checks them: shared by the programs that do.
 #pragma once
 
 #include <cstdio>
@@ -19,6 +19,18 @@ inline std::string number(double value, const char* format) {
   char text[40];
   std::snprintf(text, sizeof text, format, value);
   return text;
+}
+
+// Replaces what stands between "<!-- NAME begin -->" and "<!-- NAME end -->".
+inline std::string with_section(const std::string& text, const std::string& name,
+                                const std::string& content) {
+  const std::string begin = "<!-- " + name + " begin -->\n";
+  const std::string end = "<!-- " + name + " end -->";
+  const auto from = text.find(begin);
+  const auto to = text.find(end);
+  if (from == std::string::npos || to == std::string::npos)
+    throw std::runtime_error("no markers for " + name);
+  return text.substr(0, from + begin.size()) + content + text.substr(to);
 }
 
 // The whole program PROGRAM ROWS.jsonl PAGE.md [--check]: writes what `text_of` makes of the rows' text, or,

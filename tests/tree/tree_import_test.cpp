@@ -285,7 +285,7 @@ std::size_t check_hits(const KeptShape& shape) {
   CAPTURE(shape.name);
   const Bvh bvh = build_reference(shape.triangles, shape.options);
   const Tree tree(bvh2_bytes(bvh, shape.triangles));
-  const auto rays = random_rays(400, 71);
+  const auto rays = random_rays(4000, 71);
   const auto traced = trace_reference(bvh, shape.triangles, rays, false);
   std::size_t hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -313,14 +313,14 @@ TEST_CASE("taken over as tinybvh takes nodes, a plain tree gives the same hits")
   std::size_t hits = 0;
   for (const KeptShape& shape : kept_shapes())
     if (!shape.triangles.empty()) hits += check_hits<TinyBvh>(shape);
-  CHECK(hits > 400);
+  CHECK(hits > 1000);
 }
 
 TEST_CASE("taken over through the callbacks of Embree's builder, a plain tree gives the same hits") {
   std::size_t hits = 0;
   for (const KeptShape& shape : kept_shapes())
     if (!shape.triangles.empty()) hits += check_hits<EmbreeTree>(shape);
-  CHECK(hits > 400);
+  CHECK(hits > 1000);
 }
 
 TEST_CASE("taken over as HIPRT takes trees of one triangle a leaf, a plain tree gives the same hits") {

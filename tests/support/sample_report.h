@@ -71,10 +71,10 @@ inline Report sample_report() {
   add(device,
       {"embree-default", Family::kPeer, {0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}, {1.0, 1.0, 1.0}, 3 << 20, 2});
   for (const auto& [name, seconds] : {std::pair{"sah-balanced", 1.0}, std::pair{"sah-fast", 0.5}})
-    for (const std::uint64_t size : {308U, 1234U})
+    for (const double size : {308.0, 1234.0})
       device.sizes.push_back({name,
                               "primary",
-                              size,
+                              static_cast<std::uint64_t>(size),
                               1000,
                               true,
                               {{seconds * size, seconds * size}, {seconds, seconds}},

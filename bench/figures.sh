@@ -14,7 +14,8 @@ cmake --build "$build" --parallel "$(nproc)" --target readme_table compare_figur
 
 results=bench/results
 "$build/bench/readme_table" $results/spine.jsonl tests/consumer/main.cpp README.md
-"$build/bench/compare_figures" $results/compare.jsonl $results/devices.jsonl README.md $results/devices.md bench/pictures
+[ ! -f $results/compare.jsonl ] || [ ! -f $results/devices.jsonl ] ||
+  "$build/bench/compare_figures" $results/compare.jsonl $results/devices.jsonl README.md $results/devices.md bench/pictures
 "$build/bench/ray_aware_page" $results/ray_aware.jsonl $results/ray-aware.md
 "$build/bench/failure_map_page" $results/failure_map.jsonl $results/failure-map.md
 "$build/bench/results_page" $results/README.md

@@ -7,7 +7,7 @@
 namespace gnomon::compare {
 namespace {
 
-constexpr std::uint64_t kLeastTriangles = 500;
+constexpr std::uint64_t kLeastTriangles = 400;
 constexpr std::uint64_t kMostRays = 16'384;
 constexpr std::array<std::uint64_t, 3> kParts{64, 16, 4};  // of the scene's triangles, and all of them
 
@@ -56,6 +56,7 @@ class Sizes {
   void all() {
     const double until = run_.deadline(kSizesWeight, kSizesWeight + kAreasWeight + kPictureWeight);
     const std::string& kind = run_.options.kinds.front();
+    thinned_ = !can_be_made_anew();
     for (const std::uint64_t part : kParts) enter(part);
     if (sizes_.empty()) return;
     enter_whole();
@@ -89,25 +90,34 @@ class Sizes {
     for (const Size& size : sizes_) {
       for (const std::string& name : names_) {
         run_.report.sizes.push_back({name, kind, size.scene->triangles.size(), size.batch.rays.size(),
-                                     run_.options.at_size == nullptr, builds[place].rounds,
-                                     traces[place].rounds});
+                                     thinned_, builds[place].rounds, traces[place].rounds});
         ++place;
       }
     }
   }
 
  private:
+  // Generators have a least count: what cannot be made at the least size is thinned at all of them.
+  [[nodiscard]] bool can_be_made_anew() const {
+    if (!run_.options.at_size) return false;
+    try {
+      for (const std::uint64_t part : kParts) {
+        const std::uint64_t count = run_.scene.triangles.size() / part;
+        if (count < kLeastTriangles) continue;
+        static_cast<void>(run_.options.at_size(count));
+        return true;
+      }
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::kInvalidArgument) throw;
+    }
+    return false;
+  }
+
   void enter(std::uint64_t part) {
     const std::uint64_t count = run_.scene.triangles.size() / part;
     if (count < kLeastTriangles) return;
     Size size;
-    try {
-      size.own = std::make_unique<Scene>(run_.options.at_size ? run_.options.at_size(count)
-                                                              : thinned(run_.scene, count));
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::kInvalidArgument) throw;  // generators have a least count
-      return;
-    }
+    size.own = std::make_unique<Scene>(thinned_ ? thinned(run_.scene, count) : run_.options.at_size(count));
     size.scene = size.own.get();
     const std::vector<Method> methods = own_methods(run_.context, *size.scene, {});
     for (const std::string& name : names_) {
@@ -131,6 +141,7 @@ class Sizes {
   }
 
   RunState& run_;
+  bool thinned_ = false;
   std::vector<std::string> names_;
   std::vector<Size> sizes_;
 };

@@ -1,4 +1,4 @@
-// What makes a page from rows, or checks one: shared by the programs that write pages of bench/results.
+// What makes pages from rows, or checks them: shared by the programs that do.
 #pragma once
 
 #include <cmath>
@@ -49,6 +49,18 @@ inline std::string head_of(const std::vector<std::string>& cells) {
   for (std::size_t i = 0; i < cells.size(); ++i) rule += "---|";
   std::string out("\n");
   return out.append(line_of(cells)).append(rule).append("\n");
+}
+
+// Replaces what stands between "<!-- NAME begin -->" and "<!-- NAME end -->".
+inline std::string with_section(const std::string& text, const std::string& name,
+                                const std::string& content) {
+  const std::string begin = "<!-- " + name + " begin -->\n";
+  const std::string end = "<!-- " + name + " end -->";
+  const auto from = text.find(begin);
+  const auto to = text.find(end);
+  if (from == std::string::npos || to == std::string::npos)
+    throw std::runtime_error("no markers for " + name);
+  return text.substr(0, from + begin.size()) + content + text.substr(to);
 }
 
 // The whole program PROGRAM ROWS.jsonl... PAGE.md [--check]: writes what `text_of` makes of all rows' text,

@@ -14,6 +14,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "page_file.h"
+
 namespace {
 
 using nlohmann::json;
@@ -82,17 +84,6 @@ std::string table(const std::string& rows) {
   return out;
 }
 
-// Replaces what stands between "<!-- NAME begin -->" and "<!-- NAME end -->".
-std::string with_section(const std::string& text, const std::string& name, const std::string& content) {
-  const std::string begin = "<!-- " + name + " begin -->\n";
-  const std::string end = "<!-- " + name + " end -->";
-  const auto from = text.find(begin);
-  const auto to = text.find(end);
-  if (from == std::string::npos || to == std::string::npos)
-    throw std::runtime_error("no markers for " + name);
-  return text.substr(0, from + begin.size()) + content + text.substr(to);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -104,7 +95,7 @@ int main(int argc, char** argv) {
     const std::string before = read(argv[3]);
     const std::string example = "```cpp\n" + read(argv[2]) + "```\n";
     const std::string after =
-        with_section(with_section(before, "speed", table(read(argv[1]))), "example", example);
+        page::with_section(page::with_section(before, "speed", table(read(argv[1]))), "example", example);
     if (argc > 4 && std::string(argv[4]) == "--check") {
       if (after != before)
         std::fprintf(stderr, "README.md is behind its rows or example: run readme_table without --check\n");

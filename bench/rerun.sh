@@ -3,7 +3,8 @@
 #   rerun.sh [NAME...]     the files of bench/results to take again, without .jsonl; by default all (hours)
 #   rerun.sh --list        their names
 # New rows go to build/rows/NAME.jsonl. To keep them: cat build/rows/NAME.jsonl >> bench/results/NAME.jsonl, then
-# bench/figures.sh. Leave the machine alone meanwhile. GNOMON_DEVICE chooses another device. The thesis' set-ups, which
+# bench/figures.sh. Leave the machine alone meanwhile. GNOMON_DEVICE chooses another device,
+# GNOMON_DEVICES those of "devices". The thesis' set-ups, which
 # reproduce and exit_rule need, are named by THESIS_CONFIGS, THESIS_SCENES and THESIS_PUBLISHED.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,6 +16,20 @@ take_accuracy() { "$build/bench/accuracy_bench"; }
 take_compact() {
   beside_embree --scenes atrium,terrain,city,random --flavours wide,thread,compact --rounds 2 --ray-count 131072 \
     --rays primary,bounce
+}
+# Reports lie beside the rows: build/rows/compare-atrium.html, compare-city.html, devices.html.
+take_compare() {
+  gnomon compare scenes/atrium.glb --afresh -o "$build/rows/compare-atrium.html" --rows /dev/fd/3 3>&1 >/dev/null
+  gnomon compare gen:city:1M --time 600s --afresh -o "$build/rows/compare-city.html" --rows /dev/fd/3 3>&1 >/dev/null
+}
+# PoCL, with its portable path beside the other, and rusticl, which is slow there: small scenes, few rays.
+take_devices() {
+  local scene
+  for scene in gen:cottage:7k gen:city:20k; do
+    RUSTICL_ENABLE=llvmpipe gnomon compare "$scene" --devices "${GNOMON_DEVICES:-pocl,rusticl}" --rays primary,shadow,random \
+      --methods sah-fast,sah-balanced/portable --ray-count 4096 --judged-rays 1000 --rounds 5 --time 10m --afresh \
+      -o "$build/rows/devices.html" --rows /dev/fd/3 3>&1 >/dev/null
+  done
 }
 take_exit_rule() {
   "$build/bench/exit_rule_bench" "${THESIS_CONFIGS:?the set-ups, a JSON file}" "${THESIS_SCENES:?a folder}"
@@ -76,5 +91,6 @@ for name in "${names[@]}"; do
   "take_$name" >"$build/rows/$name.partial"
   mv "$build/rows/$name.partial" "$build/rows/$name.jsonl"
   # 7: something moved, which is for people to read.
+  [ -f "bench/results/$name.jsonl" ] || continue
   gnomon rows diff "bench/results/$name.jsonl" "$build/rows/$name.jsonl" || [ $? -eq 7 ]
 done

@@ -1,282 +1,16 @@
 // gnomon compare: every method on one's own scene and devices, beside each other, as one page.
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <CLI/CLI.hpp>
 #include <memory>
-#include <sstream>
 
 #include "commands.h"
-#include "device_choice.h"
-#include "document.h"
-#include "embree_methods.h"
-#include "exit_status.h"
-#include "gnomon/compare/analysis.h"
-#include "gnomon/compare/page.h"
-#include "gnomon/compare/report_json.h"
-#include "gnomon/compare/run_device.h"
-#include "gnomon/scene/write_file.h"
-#include "interrupt.h"
-#include "numbers.h"
-#include "scene_source.h"
-#include "version.h"
+#include "comparison.h"
 
 namespace gnomon::app {
 namespace {
 
-namespace fs = std::filesystem;
-
-struct Options {
-  SceneOptions scene;
-  bool no_cache = false;
-  std::vector<std::string> devices;
-  std::vector<std::string> kinds = compare::default_kinds();
-  std::vector<std::string> methods;
-  compare::RunOptions run;
-  std::string time = "150s";
-  std::string clock = "wall";
-  std::string page = "report.html";
-  bool afresh = false;
-};
-
-// "90", "90s", "1.5m", "2h" in seconds.
-double seconds_from(const std::string& text) {
-  std::string number = text;
-  double unit = 1.0;
-  if (!number.empty()) {
-    const char last = number.back();
-    unit = last == 'm' ? 60.0 : last == 'h' ? 3600.0 : 1.0;
-    if (last == 's' || last == 'm' || last == 'h') number.pop_back();
-  }
-  const auto value = parse_numbers(number);
-  if (!value || value->size() != 1 || !(value->front() > 0.0) || value->front() > 1e6)
-    throw Error(ErrorCode::kInvalidArgument, "--time " + text + ": write 60s, 2m or 1h");
-  return value->front() * unit;
-}
-
-// As a shell takes it.
-std::string quoted(const std::string& word) {
-  if (!word.empty() &&
-      word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@") ==
-          std::string::npos)
-    return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
-  return out + "'";
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ",") + word;
-  return out;
-}
-
-// With what decides the rows spelt out, and nothing that does not.
-std::string command_of(const Options& options) {
-  std::string out =
-      "gnomon compare " + quoted(options.scene.source) + " --rays " + quoted(joined(options.kinds));
-  if (!options.methods.empty()) out += " --methods " + quoted(joined(options.methods));
-  if (!options.devices.empty()) out += " --devices " + quoted(joined(options.devices));
-  out += " --ray-count " + std::to_string(options.run.ray_count) + " --judged-rays " +
-         std::to_string(options.run.judged_rays) + " --rounds " + std::to_string(options.run.rounds) +
-         " --seed " + std::to_string(options.run.seed) + " --time " + quoted(options.time) + " --clock " +
-         options.clock;
-  if (options.scene.invalid != "drop") out += " --invalid " + options.scene.invalid;
-  return out + " -o " + quoted(options.page);
-}
-
-compare::Report start_report(const Options& options, const Scene& scene) {
-  compare::Report report;
-  report.version = version();
-  report.commit = commit();
-  report.command = command_of(options);
-  report.scene = options.scene.source;
-  report.scene_name = scene.name.empty() ? fs::path(options.scene.source).filename().string() : scene.name;
-  report.scene_hash = scene_hash(scene);
-  report.triangles = scene.triangles.size();
-  report.clock = options.clock;
-  report.peer_note = why_no_embree();
-  report.options = {{"rays", joined(options.kinds)},
-                    {"methods", options.methods.empty() ? "all" : joined(options.methods)},
-                    {"rays of each kind", std::to_string(options.run.ray_count)},
-                    {"rays judged of each kind", std::to_string(options.run.judged_rays)},
-                    {"rays predictions are held against", std::to_string(options.run.predicted_rays)},
-                    {"rounds", std::to_string(options.run.rounds)},
-                    {"seed of rays", std::to_string(options.run.seed)},
-                    {"bins", std::to_string(BuildOptions{}.bins)},
-                    {"triangles in a leaf", std::to_string(BuildOptions{}.max_leaf_size)},
-                    {"invalid triangles", options.scene.invalid}};
-  return report;
-}
-
-compare::DeviceReport start_device(const cl::DeviceInfo& info) {
-  compare::DeviceReport device;
-  device.name = info.name;
-  device.driver = info.driver;
-  device.platform = info.platform_name;
-  device.opencl = info.version;
-  device.kind = kind_of(info);
-  device.compute_units = info.compute_units;
-  return device;
-}
-
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(ErrorCode::kIo, "cannot read " + file.string());
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void write_text(const fs::path& file, const std::string& text) {
-  write_file(file, std::as_bytes(std::span(text)));
-}
-
-// The page and what stands beside it: NAME.html, NAME.json, NAME.csv, NAME-CHART.svg.
-class Files {
- public:
-  explicit Files(const std::string& page) : page_(page) {
-    if (page_.extension() != ".html")
-      throw Error(ErrorCode::kInvalidArgument, "-o " + page + ": the page's name must end with .html");
-    const fs::path folder = page_.parent_path();
-    if (!folder.empty() && !fs::is_directory(folder))
-      throw Error(ErrorCode::kIo, "there is no folder " + folder.string() + " to write " + page + " in");
-  }
-
-  [[nodiscard]] fs::path rows() const { return with(".json"); }
-
-  void keep_rows(const compare::Report& report) const { write_text(rows(), to_json_text(report)); }
-
-  std::size_t write_all(const compare::Report& report) const {
-    keep_rows(report);
-    write_text(with(".csv"), to_csv(report));
-    const auto charts = compare::chart_files(report);
-    for (const auto& [name, svg] : charts) write_text(with("-" + name + ".svg"), svg);
-    write_text(page_, compare::report_page(report));
-    return charts.size();
-  }
-
- private:
-  [[nodiscard]] fs::path with(const std::string& ending) const {
-    return page_.parent_path() / (page_.stem().string() + ending);
-  }
-  fs::path page_;
-};
-
-// The same work: other rows would be taken for its own. The time it may take is not part of that.
-bool same_work(const compare::Report& a, const compare::Report& b) {
-  return a.commit == b.commit && a.scene_hash == b.scene_hash && a.options == b.options &&
-         a.peer_note == b.peer_note;
-}
-
-class Comparison {
- public:
-  Comparison(const Options& options, Console& console)
-      : options_(options), console_(console), files_(options.page) {
-    options_.run.kinds = options_.kinds;
-    options_.run.methods = options_.methods;
-    options_.run.seconds = seconds_from(options_.time);
-    options_.run.check();
-    const auto known = cl::list_devices();
-    if (options_.devices.empty()) devices_.push_back(cl::choose_device(known, ""));
-    for (const std::string& choice : options_.devices) devices_.push_back(cl::choose_device(known, choice));
-  }
-
-  int run() {
-    const Scene scene = load_scene(options_.scene, console_);
-    report_ = start_report(options_, scene);
-    go_on_from_file();
-    const double share = options_.run.seconds / static_cast<double>(devices_.size());
-    for (const cl::DeviceInfo& info : devices_) run_on(info, scene, share);
-    const std::size_t charts = files_.write_all(report_);
-    tell(charts);
-    return judge_ours();
-  }
-
- private:
-  void go_on_from_file() {
-    if (options_.afresh || !fs::exists(files_.rows())) return;
-    const compare::Report old = compare::from_json_text(read_text(files_.rows()), files_.rows().string());
-    if (!same_work(report_, old)) {
-      console_.note(files_.rows().string() +
-                    " is of another scene, commit or options: measuring anew, and it will be replaced");
-      return;
-    }
-    report_.devices = old.devices;
-    console_.note("going on from " + files_.rows().string() + " (--afresh measures anew)");
-  }
-
-  void run_on(const cl::DeviceInfo& info, const Scene& scene, double seconds) {
-    const auto found = std::find_if(report_.devices.begin(), report_.devices.end(), [&](const auto& device) {
-      return device.name == info.name && device.driver == info.driver &&
-             device.platform == info.platform_name;
-    });
-    const auto place = static_cast<std::size_t>(found - report_.devices.begin());
-    if (found == report_.devices.end()) report_.devices.push_back(start_device(info));
-    cl::ContextOptions how;
-    how.use_cache = !options_.no_cache;
-    const cl::Context context(info, how);
-    std::vector<compare::Method> methods = compare::own_methods(context, scene);
-    // Peers come before methods that compile kernels of their own: where time is short, those are left out.
-    std::vector<compare::Method> peers = embree_methods(info, scene);
-    methods.insert(methods.begin() + compare::kFirstMethods, std::make_move_iterator(peers.begin()),
-                   std::make_move_iterator(peers.end()));
-    compare::RunOptions run = options_.run;
-    run.seconds = seconds;
-    compare::run_device(
-        context, scene, methods, run, report_.devices[place], [this] { files_.keep_rows(report_); },
-        console_.progress());
-  }
-
-  // 6 where a method that promises exact hits has wrong ones.
-  int judge_ours() {
-    int status = kOk;
-    for (const compare::DeviceReport& device : report_.devices) {
-      for (const compare::AccuracyRow& row : device.accuracies) {
-        const bool promised =
-            std::any_of(device.methods.begin(), device.methods.end(),
-                        [&](const auto& method) { return method.name == row.method && method.exact; });
-        if (!promised || row.wrong() == 0) continue;
-        console_.error(device.name + ", " + row.method + ": " + std::to_string(row.wrong()) + " of " +
-                       std::to_string(row.judged) + " " + row.kind + " rays have wrong answers");
-        status = kMismatch;
-      }
-    }
-    return status;
-  }
-
-  void tell(std::size_t charts) {
-    Json document = start_document("compare");
-    document["page"] = options_.page;
-    document["rows"] = files_.rows().string();
-    document["charts"] = charts;
-    document["scene_hash"] = report_.scene_hash;
-    document["devices"] = Json::array();
-    std::string text;
-    for (const compare::DeviceReport& device : report_.devices) {
-      const compare::Advice advice = advise(report_, device);
-      document["devices"].push_back(
-          {{"device", device.name}, {"best", advice.best}, {"advice", advice.all()}});
-      for (const std::string& sentence : advice.all())
-        if (!sentence.empty()) text += sentence + "\n";
-      for (const compare::LeftOut& left : device.left_out)
-        console_.note("left out: " + (left.method.empty() ? "" : left.method + ", ") + left.what + ": " +
-                      left.reason);
-    }
-    if (!report_.peer_note.empty()) console_.note(report_.peer_note);
-    console_.print(document);
-    console_.print(text + "\npage    " + options_.page + "\nrows    " + files_.rows().string() + "\n");
-  }
-
-  Options options_;
-  Console& console_;
-  Files files_;
-  std::vector<cl::DeviceInfo> devices_;
-  compare::Report report_;
-};
-
-int run(const Options& options, Console& console) {
+int run(const CompareOptions& options, Console& console) {
   try {
-    return Comparison(options, console).run();
+    return compare_methods(options, console);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kCancelled) throw;
     console.note("what is finished is kept; the same command goes on from there");
@@ -312,7 +46,7 @@ const char* const kFooter =
 }  // namespace
 
 void add_compare_command(CLI::App& program, OutputOptions& output, Action& action) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompareOptions>();
   CLI::App* const command = program.add_subcommand(
       "compare", "Set every method beside the others on a scene, as a page with charts.");
   add_scene_options(*command, options->scene);
@@ -356,6 +90,10 @@ void add_compare_command(CLI::App& program, OutputOptions& output, Action& actio
       ->check(CLI::IsMember({"wall", "cpu"}))
       ->type_name("CLOCK")
       ->capture_default_str();
+  command
+      ->add_option("--rows", options->rows,
+                   "append the rows to this file, one a line, as `gnomon rows` and bench/results keep them")
+      ->type_name("FILE");
   command->add_flag("--afresh", options->afresh, "do not go on from rows that are there already");
   command->add_flag("--no-cache", options->no_cache,
                     "keep no compiled kernels on disk and take none from there");

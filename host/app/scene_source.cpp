@@ -31,14 +31,25 @@ std::uint64_t count_or_throw(const std::string& text, const std::string& source)
                   " is not a count; write gen:NAME[:TRIANGLES[:SEED]], as in gen:city:50k:7");
 }
 
-Scene generate(const std::string& source) {
+struct Generated {
+  std::string name;
+  std::uint64_t triangles = 0;
+  std::uint64_t seed = 1;
+};
+
+Generated parse_generated(const std::string& source) {
   const auto parts = split(std::string_view(source).substr(kGenerated.size()), ':');
   if (parts.size() > 3)
     throw Error(ErrorCode::kInvalidArgument, source + ": write gen:NAME[:TRIANGLES[:SEED]]");
   const std::uint64_t triangles =
       parts.size() > 1 ? count_or_throw(parts[1], source) : default_triangles(parts.front());
   const std::uint64_t seed = parts.size() > 2 ? count_or_throw(parts[2], source) : 1;
-  return generate_scene(parts.front(), triangles, seed);
+  return {parts.front(), triangles, seed};
+}
+
+Scene generate(const std::string& source) {
+  const Generated what = parse_generated(source);
+  return generate_scene(what.name, what.triangles, what.seed);
 }
 
 Scene read(const SceneOptions& options) {
@@ -54,6 +65,12 @@ Scene read(const SceneOptions& options) {
 }
 
 }  // namespace
+
+std::function<Scene(std::uint64_t)> at_sizes(const SceneOptions& options) {
+  if (!options.source.starts_with(kGenerated)) return {};
+  const Generated what = parse_generated(options.source);
+  return [what](std::uint64_t triangles) { return generate_scene(what.name, triangles, what.seed); };
+}
 
 std::uint64_t default_triangles(std::string_view generator) {
   const auto known = generators();

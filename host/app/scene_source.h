@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string_view>
 
 #include "console.h"
@@ -14,6 +15,10 @@ namespace gnomon::app {
 // stderr say what was dropped or assumed. Throws Error: kBadScene (also for a file that cannot be read),
 // kInvalidArgument (a gen: that makes no sense), kOutOfMemory, kCancelled.
 [[nodiscard]] Scene load_scene(const SceneOptions& options, Console& console);
+
+// What makes a generated scene anew with about so many triangles and the same seed; nothing for files. It
+// throws Error{kInvalidArgument} for fewer than the generator can make.
+[[nodiscard]] std::function<Scene(std::uint64_t triangles)> at_sizes(const SceneOptions& options);
 
 // How many triangles a generator makes when nobody says; 1 for a name there is none of (generate_scene then
 // lists those there are).

@@ -34,14 +34,14 @@ std::vector<double> ray_seconds(const DeviceReport& device, const std::string& m
   return sums;
 }
 
+}  // namespace
+
 Spread ratios(const std::vector<double>& base, const std::vector<double>& own) {
   std::vector<double> out;
   for (std::size_t i = 0; i < std::min(base.size(), own.size()); ++i)
     if (own[i] > 0.0) out.push_back(base[i] / own[i]);
   return spread_of(out);
 }
-
-}  // namespace
 
 std::vector<std::string> kinds_of(const DeviceReport& device) {
   std::vector<std::string> kinds;
@@ -119,6 +119,15 @@ Spread build_gain(const DeviceReport& device, const std::string& base, const std
   const BuildRow* const b = build_of(device, method);
   if (a == nullptr || b == nullptr) return {};
   return ratios(seconds_of(a->rounds, clock), seconds_of(b->rounds, clock));
+}
+
+Spread across_gain(const Report& report, const DeviceReport& device, const std::string& kind) {
+  const auto row = [&](const DeviceReport& of) {
+    const auto found =
+        std::find_if(of.across.begin(), of.across.end(), [&](const AcrossRow& r) { return r.kind == kind; });
+    return found == of.across.end() ? std::vector<double>{} : seconds_of(found->rounds, report.clock);
+  };
+  return ratios(row(report.devices.front()), row(device));
 }
 
 Verdict verdict_of(const Spread& gain) {

@@ -47,11 +47,16 @@ struct Point {
 };
 [[nodiscard]] std::vector<std::size_t> pareto_front(const std::vector<Point>& points);
 
+// base / own of rounds that both have.
+[[nodiscard]] Spread ratios(const std::vector<double>& base, const std::vector<double>& own);
 // How many times as fast the method traces as `base`, round by round: above 1 is faster.
 [[nodiscard]] Spread trace_gain(const DeviceReport& device, const std::string& base,
                                 const std::string& method, const std::string& kind, const std::string& clock);
 [[nodiscard]] Spread build_gain(const DeviceReport& device, const std::string& base,
                                 const std::string& method, const std::string& clock);
+// How many times as fast the device is with kBaseline as the report's first, round by round; kind empty:
+// building.
+[[nodiscard]] Spread across_gain(const Report& report, const DeviceReport& device, const std::string& kind);
 // Whether all rounds agree that it is faster (min above 1), slower (max below 1), or not.
 enum class Verdict { kFaster, kSlower, kUndecided };
 [[nodiscard]] Verdict verdict_of(const Spread& gain);

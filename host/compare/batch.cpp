@@ -57,16 +57,23 @@ std::vector<std::string> default_kinds() {
   return {"primary", "bounce", "shadow", "random", kLight};
 }
 
+bool is_any_hit(const std::string& kind) {
+  const auto known = ray_kind_from(kind);
+  return known && asks_any_hit(*known);
+}
+
+std::vector<Ray> draw_rays(const Scene& scene, const FindHits& closest, const std::string& kind,
+                           std::uint64_t count, std::uint64_t seed) {
+  if (const auto known = ray_kind_from(kind)) return rays_of_kind(*known, scene, closest, count, seed);
+  return kind == kLight ? rays_of_light(scene, count, seed) : rays_of_file(kind, count);
+}
+
 Batch make_batch(const cl::Context& context, const Scene& scene, const FindHits& closest,
                  const std::string& kind, std::uint64_t count, std::uint64_t seed) {
   Batch batch;
   batch.kind = kind;
-  if (const auto known = ray_kind_from(kind)) {
-    batch.any_hit = asks_any_hit(*known);
-    batch.rays = rays_of_kind(*known, scene, closest, count, seed);
-  } else {
-    batch.rays = kind == kLight ? rays_of_light(scene, count, seed) : rays_of_file(kind, count);
-  }
+  batch.any_hit = is_any_hit(kind);
+  batch.rays = draw_rays(scene, closest, kind, count, seed);
   if (batch.rays.empty()) return batch;
   batch.device_rays = context.create_buffer("rays", batch.rays.size() * sizeof(Ray));
   batch.device_answers = context.create_buffer("answers", batch.rays.size() * sizeof(Hit));

@@ -32,9 +32,15 @@ void check_kind(const std::string& kind);
 // Closest hits of rays, in their order.
 using FindHits = std::function<std::vector<Hit>(std::span<const Ray>)>;
 
+// Whether rays of that kind ask for any hit; a file's ask for the closest.
+[[nodiscard]] bool is_any_hit(const std::string& kind);
+
 // At most `count` rays, the same for the same seed; empty where the scene has none of that kind. `closest`
 // finds the hits that bounce and shadow rays start from. A file's rays are thinned evenly. Throws Error:
-// kInvalidArgument, kBadScene (a file that is none), kDevice, kOutOfMemory.
+// kInvalidArgument, kBadScene (a file that is none).
+[[nodiscard]] std::vector<Ray> draw_rays(const Scene& scene, const FindHits& closest, const std::string& kind,
+                                         std::uint64_t count, std::uint64_t seed);
+// The same, on the device too. Throws Error also: kDevice, kOutOfMemory.
 [[nodiscard]] Batch make_batch(const cl::Context& context, const Scene& scene, const FindHits& closest,
                                const std::string& kind, std::uint64_t count, std::uint64_t seed);
 

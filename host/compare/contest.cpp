@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <vector>
 
 namespace gnomon::compare {
 namespace {
@@ -30,13 +31,29 @@ double wall_now() {
 
 void run_contest(std::span<Contestant> contestants, int most, double deadline, const Clock& now,
                  const std::function<void(int, int)>& after_round) {
+  const std::size_t count = contestants.size();
+  std::size_t sits_out = count;
   double longest = 0.0;
   for (int round = 0; round < most; ++round) {
     const double start = now();
     if (round > 0 && start + longest > deadline) return;
-    for (std::size_t i = 0; i < contestants.size(); ++i)
-      time_once(contestants[round % 2 == 0 ? i : contestants.size() - 1 - i]);
-    longest = std::max(longest, now() - start);
+    std::vector<double> took(count, 0.0);
+    for (std::size_t place = 0; place < count; ++place) {
+      const std::size_t i = round % 2 == 0 ? place : count - 1 - place;
+      if (i == sits_out) continue;
+      const double begun = now();
+      time_once(contestants[i]);
+      took[i] = now() - begun;
+    }
+    const double whole = now() - start;
+    longest = std::max(longest, whole);
+    if (round == 0 && start + most * whole > deadline) {
+      const auto slowest = std::max_element(took.begin(), took.end());
+      if (slowest != took.begin() && *slowest > 0.5 * whole) {
+        sits_out = static_cast<std::size_t>(slowest - took.begin());
+        longest = whole - *slowest;
+      }
+    }
     if (after_round) after_round(round + 1, most);
   }
 }

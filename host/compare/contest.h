@@ -20,8 +20,9 @@ using Clock = std::function<double()>;
 [[nodiscard]] double wall_now();
 
 // Up to `most` rounds, at least one: none begins when its end, as the longest before it tells, would lie
-// after `deadline` of `now`. Contestants have run before, once at least: there is no round to warm up.
-// after_round(done, most) may throw.
+// after `deadline` of `now`. Where that would leave fewer than `most`, a contestant other than the first that
+// takes more than half of the first round sits out the others, so that they are not ended by it. Contestants
+// have run before, once at least: there is no round to warm up. after_round(done, most) may throw.
 void run_contest(std::span<Contestant> contestants, int most, double deadline, const Clock& now,
                  const std::function<void(int, int)>& after_round = {});
 

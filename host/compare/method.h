@@ -13,6 +13,7 @@
 #include "gnomon/areas/ray_measure.h"
 #include "gnomon/compare/batch.h"
 #include "gnomon/compare/report.h"
+#include "gnomon/plan/choose.h"
 #include "gnomon/tree/bvh.h"
 
 namespace gnomon::compare {
@@ -49,6 +50,8 @@ class Entrant {
   [[nodiscard]] virtual const Bvh* tree() { return nullptr; }
   [[nodiscard]] virtual const DeviceBvh* device_tree() { return nullptr; }
   virtual void forget_tree() {}
+  // What the last build chose, kind by kind; empty for methods that choose nothing.
+  [[nodiscard]] virtual std::vector<DecisionRow> decisions() { return {}; }
   // What the method's heuristic expects a ray to cost in that tree; nothing where it expects nothing.
   [[nodiscard]] virtual std::optional<double> predicted_cost(const Bvh&) { return std::nullopt; }
 };
@@ -56,6 +59,8 @@ class Entrant {
 struct Method {
   MethodFacts facts;
   std::function<std::unique_ptr<Entrant>()> enter;
+  double builds =
+      1.0;  // of kBaseline that its build may take as long as: where time is short it is left out for that
 };
 
 // The name of the method that others are set beside.
@@ -68,14 +73,30 @@ struct RaysOf {
   InfluenceArea area;
   RayMeasure measure;
 };
-// Of the first light of the scene that has an area; its rays are even over its window or its directions.
+// Of the lights of the scene that have an area; rays are even over its window or its directions.
+[[nodiscard]] std::vector<RaysOf> rays_of_lights(const Scene& scene);
 [[nodiscard]] std::optional<RaysOf> first_light(const Scene& scene);
 // Of the scene's first camera; nothing for a scene without a triangle.
 [[nodiscard]] std::optional<RaysOf> first_camera(const Scene& scene);
 
+// What makes plans (gnomon/plan/choose.h): for which kinds of rays, and how trees are built.
+struct PlanSource {
+  std::vector<std::string> kinds;
+  std::uint64_t seed = 1;  // plans are fitted to rays of seed + 1 and judged by those of seed + 2
+  PlanBuilder builder = reference_builder();
+};
+// Rays that a tree must repay itself over: 64 a pixel of 512 x 512.
+inline constexpr double kPlannedRays = 16'777'216.0;
+
 // Ours, kBaseline first; the first kFirstMethods are those that matter most, and the last those that take
 // longest to enter. Context and scene must outlive them.
 inline constexpr int kFirstMethods = 3;
-[[nodiscard]] std::vector<Method> own_methods(const cl::Context& context, const Scene& scene);
+[[nodiscard]] std::vector<Method> own_methods(const cl::Context& context, const Scene& scene,
+                                              const PlanSource& plan);
+
+// For the rays of one light or camera: "pah", by their projected areas; "pah+sah", half and half with surface
+// area; "auto", what a plan for them keeps. Context and scene must outlive them.
+[[nodiscard]] std::vector<Method> methods_for(const cl::Context& context, const Scene& scene,
+                                              const RaysOf& rays, const PlanBuilder& builder);
 
 }  // namespace gnomon::compare

@@ -4,14 +4,14 @@
 #include <memory>
 #include <optional>
 
-#include "gnomon/compare/method.h"
+#include "gnomon/compare/traced_tree.h"
 
 namespace gnomon::compare {
 
 struct OwnMethod {
   BuildOptions build;
   std::optional<RaysOf> rays;  // that the heuristic measures; none: surface area
-  Accuracy accuracy = Accuracy::kWatertight;
+  TracedTree::Options tracing;
 };
 
 // Throws Error{kInvalidArgument} for what the device cannot do.

@@ -8,9 +8,13 @@
 #include "gnomon/areas/measure.h"
 #include "gnomon/compare/method.h"
 #include "gnomon/compare/own_entrant.h"
+#include "gnomon/compare/plan_entrant.h"
 
 namespace gnomon::compare {
 namespace {
+
+// Of kBaseline, that a plan for five kinds of rays may take as long as.
+constexpr double kPlanBuilds = 100.0;
 
 // Numbers as --direction takes them, exact for floats.
 std::string numbers(const Vec3& v) {
@@ -39,6 +43,16 @@ BuildOptions for_rays(const RaysOf& rays, bool culled, AxisPolicy axes, float sh
   return options;
 }
 
+// Surface area, with the rays for the policy to go by, as --axes spfh makes it.
+BuildOptions facing(const RaysOf& rays) {
+  BuildOptions options = for_rays(rays, true, AxisPolicy::kSpfh);
+  options.policy.rays_from_point = options.measure.kind != GN_MEASURE_LINEAR;
+  options.measure.kind = GN_MEASURE_LINEAR;
+  for (float& weight : options.measure.weights) weight = 1.0F;
+  options.measure.breaks_ties = 0;
+  return options;
+}
+
 const char* option_of(RayMeasure measure, bool culled) {
   switch (measure) {
     case RayMeasure::kParallel:
@@ -58,10 +72,10 @@ class List {
   List(const cl::Context& context, const Scene& scene) : context_(context), scene_(scene) {}
 
   void add(const MethodFacts& facts, const BuildOptions& build,
-           const std::optional<RaysOf>& rays = std::nullopt, Accuracy accuracy = Accuracy::kWatertight) {
-    OwnMethod own{build, rays, accuracy};
+           const std::optional<RaysOf>& rays = std::nullopt, const TracedTree::Options& tracing = {}) {
+    OwnMethod own{build, rays, tracing};
     MethodFacts own_facts = facts;
-    own_facts.exact = accuracy == Accuracy::kWatertight;
+    own_facts.exact = tracing.accuracy == Accuracy::kWatertight;
     methods_.push_back(
         {own_facts, [&context = context_, &scene = scene_, own] { return enter_own(context, scene, own); }});
   }
@@ -87,6 +101,19 @@ class List {
            "projected areas, long sides divided first,");
     method(true, AxisPolicy::kAll, 0.5F, "+sah", Family::kMixture,
            "projected and surface areas, half and half,");
+    add({"sah+spfh@" + tag, Family::kMixture,
+         "surface area, planes that face the rays of " + rays.name + " first", "--axes spfh " + rays.options},
+        facing(rays));
+  }
+
+  void add_plan(const PlanBuilder& builder, const RaysToPlan& rays) {
+    methods_.push_back({{"auto", Family::kMixture,
+                         "the trees that gnomon plan keeps for these rays, its choosing part of the build",
+                         "--plan auto", true},
+                        [&context = context_, &scene = scene_, builder, rays] {
+                          return enter_plan(context, scene, builder, rays);
+                        },
+                        kPlanBuilds});
   }
 
   [[nodiscard]] std::vector<Method> take() { return std::move(methods_); }
@@ -99,15 +126,21 @@ class List {
 
 }  // namespace
 
-std::optional<RaysOf> first_light(const Scene& scene) {
+std::vector<RaysOf> rays_of_lights(const Scene& scene) {
+  std::vector<RaysOf> out;
   for (const LightArea& light : areas_of_lights(scene)) {
     const bool parallel = light.area.kind() == AreaKind::kPlane;
     const std::string index = std::to_string(light.light);
     const std::string& name = scene.lights[light.light].name;
-    return RaysOf{"light " + index + (name.empty() ? "" : " (" + name + ")"), "--light " + index, light.area,
-                  parallel ? RayMeasure::kParallel : RayMeasure::kSolidAngle};
+    out.push_back({"light " + index + (name.empty() ? "" : " (" + name + ")"), "--light " + index, light.area,
+                   parallel ? RayMeasure::kParallel : RayMeasure::kSolidAngle});
   }
-  return std::nullopt;
+  return out;
+}
+
+std::optional<RaysOf> first_light(const Scene& scene) {
+  const std::vector<RaysOf> lights = rays_of_lights(scene);
+  return lights.empty() ? std::nullopt : std::optional(lights.front());
 }
 
 std::optional<RaysOf> first_camera(const Scene& scene) {
@@ -140,7 +173,7 @@ std::optional<RaysOf> first_camera(const Scene& scene) {
                 InfluenceArea::point(view), RayMeasure::kNearPlane};
 }
 
-std::vector<Method> own_methods(const cl::Context& context, const Scene& scene) {
+std::vector<Method> own_methods(const cl::Context& context, const Scene& scene, const PlanSource& plan) {
   List list(context, scene);
   list.add({kBaseline, Family::kSurface, "surface area heuristic, top down", "--builder balanced"},
            surface(Builder::kBalanced));
@@ -159,7 +192,7 @@ std::vector<Method> own_methods(const cl::Context& context, const Scene& scene) 
   list.add({"sah-balanced/fast-hits", Family::kSurface,
             "the tree of sah-balanced, hits decided by floats alone (gnomon trace --accuracy fast)",
             "--builder balanced"},
-           surface(Builder::kBalanced), std::nullopt, Accuracy::kFast);
+           surface(Builder::kBalanced), std::nullopt, {Accuracy::kFast, false});
   const auto light = first_light(scene);
   if (light) list.add_published(*light, "light");
   if (const auto camera = first_camera(scene)) {
@@ -167,8 +200,25 @@ std::vector<Method> own_methods(const cl::Context& context, const Scene& scene) 
               "--heuristic near-plane " + camera->options},
              for_rays(*camera, true, AxisPolicy::kAll), camera);
   }
+  list.add_plan(plan.builder, drawn_for(scene, plan));
   list.add({"sah+lsph", Family::kSurface, "surface area heuristic, long sides divided first", "--axes lsph"},
            surface(Builder::kBalanced, AxisPolicy::kLsph));
+  list.add(
+      {"sah-balanced/portable", Family::kSurface,
+       "the tree of sah-balanced, traced by OpenCL C alone, without the device compiler's own instructions",
+       "--builder balanced"},
+      surface(Builder::kBalanced), std::nullopt, {Accuracy::kWatertight, true});
+  return list.take();
+}
+
+std::vector<Method> methods_for(const cl::Context& context, const Scene& scene, const RaysOf& rays,
+                                const PlanBuilder& builder) {
+  List list(context, scene);
+  list.add({"pah", Family::kRays, "projected areas", rays.options}, for_rays(rays, true, AxisPolicy::kAll),
+           rays);
+  list.add({"pah+sah", Family::kMixture, "projected and surface areas, half and half", rays.options},
+           for_rays(rays, true, AxisPolicy::kAll, 0.5F), rays);
+  list.add_plan(builder, planned_for(rays));
   return list.take();
 }
 

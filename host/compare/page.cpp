@@ -7,6 +7,7 @@
 #include "gnomon/base/stats.h"
 #include "gnomon/compare/analysis.h"
 #include "gnomon/compare/charts.h"
+#include "gnomon/compare/device_page.h"
 #include "gnomon/compare/method.h"
 #include "gnomon/compare/page_parts.h"
 #include "gnomon/compare/report_json.h"
@@ -18,18 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kLeastRaysLog = 3.0;
-constexpr double kMostRaysLog = 12.0;
-
-std::string element(const std::string& name, const std::string& content, const std::string& classes = "") {
-  return "<" + name + (classes.empty() ? "" : " class=\"" + classes + "\"") + ">" + content + "</" + name +
-         ">\n";
-}
-
-std::string cell(const std::string& content, const std::string& classes = "") {
-  return "<td" + (classes.empty() ? "" : " class=\"" + classes + "\"") + ">" + content + "</td>";
-}
-
 // Inside a script element: nothing in it may end that.
 std::string script_safe(std::string text) {
   for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3)
@@ -39,192 +28,38 @@ std::string script_safe(std::string text) {
   return text;
 }
 
-std::string picture(const std::string& png, const std::string& alternative) {
-  return "<img alt=\"" + escaped(alternative) + "\" src=\"data:image/png;base64," + to_base64(png) + "\">";
-}
-
-class DevicePage {
- public:
-  DevicePage(const Report& report, const DeviceReport& device) : report_(report), device_(device) {}
-
-  [[nodiscard]] std::string advice() const {
-    std::string out;
-    for (const std::string& sentence : advise(report_, device_).all())
-      if (!sentence.empty()) out += element("p", escaped(sentence));
-    return "<div class=\"advice\">\n" + out + "</div>\n";
-  }
-
-  [[nodiscard]] std::string body() const {
-    const std::vector<Chart> charts = charts_of(report_, device_);
-    std::string out;
-    if (std::any_of(charts.begin(), charts.end(), [](const Chart& chart) { return chart.moves; })) {
-      out += "<h2>Time, accuracy and memory</h2>\n<div>\n" + control() + "<div class=\"charts two\">\n";
-      for (const Chart& chart : charts)
-        if (chart.moves) out += figure(chart);
-      out += "</div>\n" + table() + "</div>\n";
-    } else {
-      out += table();
-    }
-    out += "<h2>What each method gains and does</h2>\n<div class=\"charts\">\n";
-    for (const Chart& chart : charts)
-      if (!chart.moves) out += figure(chart);
-    return out + "</div>\n" + pictures() + left_out();
-  }
-
-  // The script's lines, by kind.
-  [[nodiscard]] Json lines() const {
-    Json out = Json::object();
-    std::vector<std::string> kinds = kinds_of(device_);
-    kinds.insert(kinds.begin(), kAllKinds);
-    for (const std::string& kind : kinds) {
-      Json& of_kind = out[kind] = Json::array();
-      for (const Line& line : lines_of(device_, kind, report_.clock))
-        of_kind.push_back({{"letter", letter_of(device_, line.method)},
-                           {"method", line.method},
-                           {"build_s", line.build_s},
-                           {"ray_s", line.ray_s}});
-    }
-    return out;
-  }
-
-  [[nodiscard]] std::string facts() const {
-    return fact("device", device_.name + " (" + device_.platform + ")") + fact("driver", device_.driver) +
-           fact("OpenCL", device_.opencl) + fact("compute units", std::to_string(device_.compute_units));
-  }
-
-  static std::string fact(const std::string& name, const std::string& value) {
-    return "<dt>" + escaped(name) + "</dt><dd>" + escaped(value) + "</dd>\n";
-  }
-
- private:
-  static std::string figure(const Chart& chart) {
-    return "<figure id=\"" + chart.name + "\">\n<h3>" + escaped(chart.title) + "</h3>\n" + chart.inside +
-           "<figcaption>" + escaped(chart.note) + "</figcaption>\n</figure>\n";
-  }
-
-  [[nodiscard]] std::string control() const {
-    std::string out =
-        "<div class=\"control\">\n<label>rays of <select aria-label=\"kind of rays\"><option "
-        "value=\"all\">all "
-        "kinds, as many of each</option>";
-    for (const std::string& kind : kinds_of(device_))
-      out += "<option value=\"" + escaped(kind) + "\">" + escaped(kind) + "</option>";
-    return out + "</select></label>\n<input type=\"range\" aria-label=\"rays per build\" min=\"" +
-           fixed(kLeastRaysLog, 0) + "\" max=\"" + fixed(kMostRaysLog, 0) + "\" step=\"0.05\" value=\"" +
-           fixed(std::log10(kFirstRays), 0) + "\">\n<output>" + count_text(kFirstRays) +
-           " rays after one build</output>\n</div>\n";
-  }
-
-  // What letters stand for, and figures of each.
-  [[nodiscard]] std::string table() const {
-    std::string rows;
-    const std::vector<Line> lines = lines_of(device_, kAllKinds, report_.clock);
-    double base_time = 0.0;
-    for (const Line& line : lines)
-      if (line.method == kBaseline) base_time = line.build_s + kFirstRays * line.ray_s;
-    for (const MethodFacts& method : device_.methods) {
-      const auto line =
-          std::find_if(lines.begin(), lines.end(), [&](const Line& l) { return l.method == method.name; });
-      const auto build = std::find_if(device_.builds.begin(), device_.builds.end(),
-                                      [&](const BuildRow& r) { return r.method == method.name; });
-      if (build == device_.builds.end()) continue;
-      const Wrong wrong = wrong_of(device_, method.name);
-      const double time = line == lines.end() ? 0.0 : line->build_s + kFirstRays * line->ray_s;
-      const std::string letter = letter_of(device_, method.name);
-      const Spread seconds = spread_of(seconds_of(build->rounds, report_.clock));
-      rows += "<tr data-letter=\"" + letter + "\">" + cell(letter) +
-              cell(escaped(method.name) + "<small>" + escaped(method.what) +
-                       (method.options.empty() ? "" : ": <code>" + escaped(method.options) + "</code>") +
-                       "</small>",
-                   "name") +
-              cell(line == lines.end() ? "–" : time_text(time), "time") +
-              cell(line == lines.end() || base_time == 0.0 ? "–" : fixed(time / base_time, 2), "ratio") +
-              cell(seconds.count == 0 ? "–" : time_text(seconds.median)) +
-              cell(line == lines.end() ? "–" : time_text(line->ray_s)) +
-              cell(bytes_text(static_cast<double>(build->bytes))) +
-              cell(build->sah_cost > 0.0 ? significant(build->sah_cost, 4) : "–") +
-              cell(wrong.judged == 0 ? "–"
-                                     : std::to_string(wrong.wrong) + " of " + std::to_string(wrong.judged)) +
-              "</tr>\n";
-    }
-    return "<h3>What the letters stand for</h3>\n<div class=\"wide\"><table>\n<thead><tr><th></th><th "
-           "class=\"name\">method</th><th>build and rays</th><th>over " +
-           std::string(kBaseline) +
-           "</th><th>build</th><th>a ray</th><th>memory</th><th>SAH "
-           "cost</th><th>wrong</th></tr></thead>\n<tbody>\n" +
-           rows +
-           "</tbody>\n</table></div>\n<p class=\"soft\">Marks: circles for surface area heuristics, squares "
-           "for "
-           "heuristics of one source of rays, diamonds for mixtures, triangles for peers. Times are medians, "
-           "of " +
-           (report_.clock == "cpu" ? "processor time of all threads" : "waiting time") +
-           "; a ray's is the mean over the kinds. Wrong: a hit lost, a false one, one more than 4 ulp off, "
-           "or one on a "
-           "triangle that is not there, against exact arithmetic.</p>\n";
-  }
-
-  [[nodiscard]] std::string pictures() const {
-    const Pictures& p = device_.pictures;
-    if (p.png.empty()) return "";
-    std::string out =
-        "<h2>Where the work is</h2>\n<p class=\"soft\">Boxes that the ray through each pixel tests, from "
-        "dark "
-        "(none) to pale (" +
-        fixed(p.white, 0) + " and more), one scale for all.</p>\n<div class=\"maps\">\n";
-    const auto add = [&](const std::string& name, const std::string& caption) {
-      const auto png = p.png.find(name);
-      if (png == p.png.end()) return;
-      out += "<figure>" + picture(png->second, name.empty() ? "the scene" : "boxes tested, " + name) +
-             "<figcaption>" + escaped(caption) + "</figcaption></figure>\n";
-    };
-    add("", "The scene: " + report_.scene_name);
-    for (const MethodFacts& method : device_.methods) {
-      const auto mean = p.mean.find(method.name);
-      if (mean != p.mean.end())
-        add(method.name, letter_of(device_, method.name) + "  " + method.name + ": " +
-                             fixed(mean->second, 1) + " boxes a ray");
-    }
-    return out + "</div>\n";
-  }
-
-  [[nodiscard]] std::string left_out() const {
-    std::string items;
-    for (const LeftOut& left : device_.left_out)
-      items += element(
-          "li", escaped((left.method.empty() ? "" : left.method + ", ") + left.what + ": " + left.reason));
-    if (!report_.peer_note.empty()) items += element("li", escaped(report_.peer_note));
-    return items.empty() ? "" : "<h2>What was left out</h2>\n<ul>\n" + items + "</ul>\n";
-  }
-
-  const Report& report_;
-  const DeviceReport& device_;
-};
-
 // One method on every device: what a portable kernel is worth where.
 std::string devices_table(const Report& report) {
   if (report.devices.size() < 2) return "";
   const std::vector<std::string> kinds = kinds_of(report.devices.front());
-  std::string head = "<th class=\"name\">device</th><th>build</th>";
+  std::string head = "<th class=\"name\">device</th><th>tree</th><th>wrong</th><th>build</th>";
   for (const std::string& kind : kinds) head += "<th>" + escaped(kind) + "</th>";
+  const auto gain = [&](const DeviceReport& device, const std::string& kind) {
+    const Spread s = across_gain(report, device, kind);
+    return s.count == 0 ? std::string("–")
+                        : significant(s.median) + "<small>" + significant(s.min) + " to " +
+                              significant(s.max) + "</small>";
+  };
   std::string rows;
   for (const DeviceReport& device : report.devices) {
-    rows += "<tr>" + cell(escaped(device.name) + "<small>" +
-                              escaped(device.platform + ", driver " + device.driver) + "</small>",
-                          "name");
-    const auto lines = lines_of(device, kAllKinds, report.clock);
-    const auto base =
-        std::find_if(lines.begin(), lines.end(), [](const Line& l) { return l.method == kBaseline; });
-    rows += cell(base == lines.end() ? "–" : time_text(base->build_s));
-    for (const std::string& kind : kinds) {
-      std::string speed = "–";
-      for (const Line& line : lines_of(device, kind, report.clock))
-        if (line.method == kBaseline && line.ray_s > 0.0) speed = significant(1e-6 / line.ray_s);
-      rows += cell(speed);
-    }
-    rows += cell(escaped(advise(report, device).best)) + "</tr>\n";
+    rows += "<tr>" + html_cell(escaped(device.name) + "<small>" +
+                                   escaped(device.platform + ", driver " + device.driver) + "</small>",
+                               "name");
+    const auto build = std::find_if(device.builds.begin(), device.builds.end(),
+                                    [](const BuildRow& row) { return row.method == kBaseline; });
+    const Wrong wrong = wrong_of(device, kBaseline);
+    rows += html_cell(build == device.builds.end() ? "–" : escaped(build->tree_hash.substr(0, 8)));
+    rows += html_cell(
+        wrong.judged == 0 ? "–" : std::to_string(wrong.wrong) + " of " + std::to_string(wrong.judged));
+    rows += html_cell(gain(device, ""));
+    for (const std::string& kind : kinds) rows += html_cell(gain(device, kind));
+    rows += html_cell(escaped(advise(report, device).best)) + "</tr>\n";
   }
-  return "<h2>Over devices</h2>\n<div class=\"wide\"><table>\n<caption>" + std::string(kBaseline) +
-         ": build time, and millions of rays a second by kind; last, what to use for many "
+  return "<h2>Over devices</h2>\n<div class=\"wide\"><table class=\"devices\">\n<caption>" +
+         std::string(kBaseline) +
+         ": times as fast as the first device, in rounds that took turns (median, least to greatest); the "
+         "tree's "
+         "hash, which is to be the same everywhere; last, what to use there for many "
          "rays</caption>\n<thead><tr>" +
          head + "<th>use</th></tr></thead>\n<tbody>\n" + rows + "</tbody>\n</table></div>\n";
 }
@@ -237,14 +72,12 @@ std::string data_of(const Report& report) {
 }
 
 std::string repeat_section(const Report& report) {
-  std::string facts = DevicePage::fact("commit", report.commit) +
-                      DevicePage::fact("version", report.version) +
-                      DevicePage::fact("scene", report.scene + ", " + std::to_string(report.triangles) +
-                                                    " triangles, hash " + report.scene_hash);
+  std::string facts = html_fact("commit", report.commit) + html_fact("version", report.version) +
+                      html_fact("scene", report.scene + ", " + std::to_string(report.triangles) +
+                                             " triangles, hash " + report.scene_hash);
   for (const DeviceReport& device : report.devices) facts += DevicePage(report, device).facts();
-  for (const auto& [name, value] : report.options) facts += DevicePage::fact(name, value);
-  facts +=
-      DevicePage::fact("clock", report.clock == "cpu" ? "processor time of all threads" : "waiting time");
+  for (const auto& [name, value] : report.options) facts += html_fact(name, value);
+  facts += html_fact("clock", report.clock == "cpu" ? "processor time of all threads" : "waiting time");
   return "<h2>To repeat it</h2>\n<pre>" + escaped(report.command) + "</pre>\n<dl>\n" + facts +
          "</dl>\n<p class=\"soft\">Rounds take turns: in each, every method runs once next to the others, "
          "and every other "

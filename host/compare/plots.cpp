@@ -215,18 +215,23 @@ Svg draw(const RowPlot& plot) {
 Svg draw(const CurvePlot& plot) {
   std::vector<double> xs;
   std::vector<double> ys;
-  for (const CurvePlot::Curve& curve : plot.curves) {
-    for (const auto& [px, py] : curve.points) {
+  const auto hold = [&](const std::vector<std::pair<double, double>>& points) {
+    for (const auto& [px, py] : points) {
       xs.push_back(px);
       ys.push_back(py);
     }
-  }
+  };
+  for (const CurvePlot::Curve& curve : plot.curves) hold(curve.points);
+  hold(plot.guide);
   const double first = kScatterBottom + 58.0;
   Svg svg(kChartWidth, first + 18.0 * static_cast<double>(plot.curves.size()));
   const LogAxis x(xs, kLeft, kRight);
   const LogAxis y(ys, kScatterBottom, kTop);
   x_axis(svg, x, kTop, kScatterBottom, plot.x_label);
   y_axis(svg, y, kLeft, kRight, plot.y_label);
+  if (!plot.guide.empty())
+    svg.line(x.at(plot.guide.front().first), y.at(plot.guide.front().second), x.at(plot.guide.back().first),
+             y.at(plot.guide.back().second), "even");
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     const CurvePlot::Curve& curve = plot.curves[i];
     const std::string classes = "curve " + color_of(i) +
@@ -237,8 +242,9 @@ Svg draw(const CurvePlot& plot) {
     std::string d;
     for (const auto& [px, py] : curve.points) {
       const bool first_point = d.empty();
-      d.append(first_point ? "M" : "H").append(coordinate(x.at(px)));
-      d.append(first_point ? " " : "V").append(coordinate(y.at(py)));
+      d.append(first_point ? "M" : plot.straight ? "L" : "H").append(coordinate(x.at(px)));
+      d.append(first_point || plot.straight ? " " : "V").append(coordinate(y.at(py)));
+      if (plot.straight) svg.mark(x.at(px), y.at(py), 3.5, static_cast<unsigned>(i), color_of(i));
     }
     if (!d.empty()) svg.path(d, classes);
     const double at = first + 18.0 * static_cast<double>(i);

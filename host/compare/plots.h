@@ -66,7 +66,7 @@ struct RowPlot {
 };
 [[nodiscard]] Svg draw(const RowPlot& plot);
 
-// Falling curves, both axes logarithmic.
+// Curves, both axes logarithmic: steps, or straight from point to point, each marked.
 struct CurvePlot {
   struct Curve {
     std::string name;
@@ -74,6 +74,8 @@ struct CurvePlot {
   };
   std::string x_label, y_label;
   std::vector<Curve> curves;
+  bool straight = false;
+  std::vector<std::pair<double, double>> guide;  // a dashed line from the first to the last
 };
 [[nodiscard]] Svg draw(const CurvePlot& plot);
 

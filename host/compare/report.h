@@ -102,6 +102,54 @@ struct PredictionRow {
   bool operator==(const PredictionRow&) const = default;
 };
 
+// What a method that chooses trees chose for one kind of rays (gnomon/plan/choose.h). Costs are counts: 1.0 a
+// box test of the binary tree, 1.2 a triangle test.
+struct DecisionRow {
+  std::string method;
+  std::string kind;
+  std::string query;            // closest, any
+  double expected = 0.0;        // rays that a tree must repay itself over
+  std::string kept;             // the tree's name
+  std::string reason;           // in words
+  std::uint64_t probes = 0;     // rays it was judged by
+  double baseline_cost = 0.0;   // of a probe ray in the baseline
+  double cost = 0.0;            // and in what was kept
+  double planning_share = 0.0;  // work of the whole planning over that of building its baseline
+  bool operator==(const DecisionRow&) const = default;
+};
+
+// A method's times on the scene at one size. All sizes and methods took turns in one contest.
+struct SizeRow {
+  std::string method;
+  std::string kind;  // of rays
+  std::uint64_t triangles = 0;
+  std::uint64_t rays = 0;
+  bool thinned = false;  // the scene with triangles left out, not made anew at that size
+  Rounds build;
+  Rounds trace;
+  bool operator==(const SizeRow&) const = default;
+};
+
+// What rays of one light cost in a method's tree, each by itself; beside kBaseline's row of the same area.
+struct AreaRow {
+  std::string method;
+  std::string area;  // the light
+  std::uint64_t rays = 0;
+  double boxes_per_ray = 0.0;
+  double triangles_per_ray = 0.0;
+  // 1.0 a box and 1.2 a triangle, as plans reckon.
+  [[nodiscard]] double cost() const { return boxes_per_ray + 1.2 * triangles_per_ray; }
+  bool operator==(const AreaRow&) const = default;
+};
+
+// kBaseline on this device, in rounds that took turns with the report's other devices.
+struct AcrossRow {
+  std::string kind;  // of rays; empty: a build
+  std::uint64_t rays = 0;
+  Rounds rounds;
+  bool operator==(const AcrossRow&) const = default;
+};
+
 // A method, or one of its measurements, that is not there, and why.
 struct LeftOut {
   std::string method;  // empty: all of them
@@ -128,6 +176,10 @@ struct DeviceReport {
   std::vector<TraceRow> traces;
   std::vector<AccuracyRow> accuracies;
   std::vector<PredictionRow> predictions;
+  std::vector<DecisionRow> decisions;
+  std::vector<SizeRow> sizes;
+  std::vector<AreaRow> areas;
+  std::vector<AcrossRow> across;
   std::vector<LeftOut> left_out;
   Pictures pictures;
   std::vector<std::string> done;  // steps that are finished: a rerun passes over them

@@ -1,160 +1,23 @@
 #include "gnomon/compare/report_json.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "gnomon/base/error.h"
-#include "gnomon/base/stats.h"
-#include "gnomon/compare/answer_counts.h"
+#include "gnomon/compare/report_rows.h"
 
 namespace gnomon::compare {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-void put_rounds(Json& row, const Rounds& rounds, double items) {
-  row["wall_s"] = rounds.wall_s;
-  row["cpu_s"] = rounds.cpu_s;
-  if (rounds.wall_s.empty() || items <= 0.0) return;
-  row["real_time"] = 1e9 * spread_of(rounds.wall_s).median / items;
-  row["cpu_time"] = 1e9 * spread_of(rounds.cpu_s).median / items;
-  row["time_unit"] = "ns";
-}
-
-Rounds get_rounds(const Json& row) {
-  return {row.at("wall_s").get<std::vector<double>>(), row.at("cpu_s").get<std::vector<double>>()};
-}
-
-Json text_or_null(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
-}
-std::string text_of(const Json& value) {
-  return value.is_null() ? std::string() : value.get<std::string>();
-}
-
-class Rows {
- public:
-  Rows(const Report& report, const DeviceReport& device) : report_(report), device_(device) {}
-
-  [[nodiscard]] Json all() const {
-    Json rows = Json::array();
-    for (const BuildRow& row : device_.builds) rows.push_back(build(row));
-    for (const TraceRow& row : device_.traces) rows.push_back(trace(row));
-    for (const AccuracyRow& row : device_.accuracies) rows.push_back(accuracy(row));
-    for (const PredictionRow& row : device_.predictions) rows.push_back(prediction(row));
-    for (const LeftOut& row : device_.left_out) rows.push_back(left_out(row));
-    return rows;
-  }
-
- private:
-  [[nodiscard]] Json start(const std::string& task, const std::string& method,
-                           const std::string& kind) const {
-    return {{"schema", kSchema},
-            {"bench", "compare"},
-            {"task", task},
-            {"name", task + "/" + report_.scene + "/" + kind + (kind.empty() ? "" : "/") + method},
-            {"commit", report_.commit},
-            {"device", device_.name},
-            {"driver", device_.driver},
-            {"scene", report_.scene},
-            {"scene_hash", report_.scene_hash},
-            {"triangles", report_.triangles},
-            {"method", text_or_null(method)}};
-  }
-
-  [[nodiscard]] Json build(const BuildRow& r) const {
-    Json row = start("build", r.method, "");
-    put_rounds(row, r.rounds, static_cast<double>(report_.triangles));
-    row["bytes"] = r.bytes;
-    row["scratch_bytes"] = r.scratch_bytes;
-    row["tree_hash"] = text_or_null(r.tree_hash);
-    row["nodes"] = r.nodes;
-    row["max_depth"] = r.max_depth;
-    row["sah_cost"] = r.sah_cost;
-    row["flavour"] = r.flavour;
-    return row;
-  }
-
-  [[nodiscard]] Json trace(const TraceRow& r) const {
-    Json row = start("trace", r.method, r.kind);
-    row["rays"] = r.kind;
-    row["query"] = r.any_hit ? "any" : "closest";
-    row["ray_count"] = r.rays;
-    row["hits"] = r.hits;
-    put_rounds(row, r.rounds, static_cast<double>(r.rays));
-    row["boxes_per_ray"] = r.counted ? Json(r.boxes_per_ray) : Json(nullptr);
-    row["triangles_per_ray"] = r.counted ? Json(r.triangles_per_ray) : Json(nullptr);
-    return row;
-  }
-
-  [[nodiscard]] Json accuracy(const AccuracyRow& r) const {
-    Json row = start("accuracy", r.method, r.kind);
-    row["rays"] = r.kind;
-    row["judged"] = r.judged;
-    put_answer_counts(row, r);
-    row["max_t_error_ulp"] = r.max_t_error_ulp;
-    row["t_error_steps"] = Json::array();
-    for (const auto& [end, hits] : r.t_error_steps)
-      row["t_error_steps"].push_back(Json::array({end > 0.0 ? Json(end) : Json(nullptr), hits}));
-    row["same_as"] = text_or_null(r.same_as);
-    return row;
-  }
-
-  [[nodiscard]] Json prediction(const PredictionRow& r) const {
-    Json row = start("prediction", r.method, r.kind);
-    row["rays"] = r.kind;
-    row["ray_count"] = r.rays;
-    row["predicted"] = r.predicted;
-    row["measured"] = r.measured;
-    row["standard_error"] = r.standard_error;
-    return row;
-  }
-
-  [[nodiscard]] Json left_out(const LeftOut& r) const {
-    Json row = start("left_out", r.method, r.what);
-    row["what"] = r.what;
-    row["reason"] = r.reason;
-    return row;
-  }
-
-  const Report& report_;
-  const DeviceReport& device_;
-};
-
-void read_row(const Json& row, DeviceReport& device) {
-  const std::string task = row.at("task");
-  const std::string method = text_of(row.at("method"));
-  if (task == "build") {
-    device.builds.push_back({method, get_rounds(row), row.at("bytes"), row.at("scratch_bytes"),
-                             text_of(row.at("tree_hash")), row.at("nodes"), row.at("max_depth"),
-                             row.at("sah_cost"), row.at("flavour")});
-  } else if (task == "trace") {
-    const bool counted = !row.at("boxes_per_ray").is_null();
-    device.traces.push_back({method, row.at("rays"), row.at("query") == "any", row.at("ray_count"),
-                             row.at("hits"), get_rounds(row), counted,
-                             counted ? row.at("boxes_per_ray").get<double>() : 0.0,
-                             counted ? row.at("triangles_per_ray").get<double>() : 0.0});
-  } else if (task == "accuracy") {
-    AccuracyRow r{method,
-                  row.at("rays"),
-                  text_of(row.at("same_as")),
-                  row.at("judged"),
-                  row.at("hits"),
-                  row.at("lost"),
-                  row.at("false_hits"),
-                  row.at("wrong_primitive"),
-                  row.at("any_closest_disagree"),
-                  row.at("max_t_error_ulp"),
-                  {}};
-    for (const Json& step : row.at("t_error_steps"))
-      r.t_error_steps.emplace_back(step.at(0).is_null() ? 0.0 : step.at(0).get<double>(), step.at(1));
-    device.accuracies.push_back(std::move(r));
-  } else if (task == "prediction") {
-    device.predictions.push_back({method, row.at("rays"), row.at("ray_count"), row.at("predicted"),
-                                  row.at("measured"), row.at("standard_error")});
-  } else if (task == "left_out") {
-    device.left_out.push_back({method, row.at("what"), row.at("reason")});
-  }
+Json methods_json(const DeviceReport& device) {
+  Json out = Json::array();
+  for (const MethodFacts& m : device.methods)
+    out.push_back({{"name", m.name},
+                   {"family", to_string(m.family)},
+                   {"what", m.what},
+                   {"options", m.options},
+                   {"exact", m.exact}});
+  return out;
 }
 
 Json device_json(const Report& report, const DeviceReport& device) {
@@ -162,14 +25,8 @@ Json device_json(const Report& report, const DeviceReport& device) {
            {"platform", device.platform}, {"opencl", device.opencl},
            {"device_kind", device.kind},  {"compute_units", device.compute_units},
            {"complete", device.complete}, {"done", device.done}};
-  out["methods"] = Json::array();
-  for (const MethodFacts& m : device.methods)
-    out["methods"].push_back({{"name", m.name},
-                              {"family", to_string(m.family)},
-                              {"what", m.what},
-                              {"options", m.options},
-                              {"exact", m.exact}});
-  out["rows"] = Rows(report, device).all();
+  out["methods"] = methods_json(device);
+  out["rows"] = rows_of(report, device);
   Json png = Json::object();
   for (const auto& [name, bytes] : device.pictures.png) png[name] = to_base64(bytes);
   out["pictures"] = {{"width", device.pictures.width},
@@ -186,6 +43,12 @@ Family family_from(const std::string& name) {
   throw Error(ErrorCode::kBadScene, "\"" + name + "\" is no family of methods");
 }
 
+void read_methods(const Json& in, DeviceReport& device) {
+  for (const Json& m : in)
+    device.methods.push_back(
+        {m.at("name"), family_from(m.at("family")), m.at("what"), m.at("options"), m.at("exact")});
+}
+
 DeviceReport read_device(const Json& in) {
   DeviceReport device;
   device.name = in.at("device");
@@ -196,9 +59,7 @@ DeviceReport read_device(const Json& in) {
   device.compute_units = in.at("compute_units");
   device.complete = in.at("complete");
   device.done = in.at("done").get<std::vector<std::string>>();
-  for (const Json& m : in.at("methods"))
-    device.methods.push_back(
-        {m.at("name"), family_from(m.at("family")), m.at("what"), m.at("options"), m.at("exact")});
+  read_methods(in.at("methods"), device);
   for (const Json& row : in.at("rows")) read_row(row, device);
   const Json& pictures = in.at("pictures");
   device.pictures.width = pictures.at("width");
@@ -209,7 +70,99 @@ DeviceReport read_device(const Json& in) {
   return device;
 }
 
+// What a device's rows do not say of themselves.
+Json run_row(const Report& report, const DeviceReport& device) {
+  Json row{{"schema", kSchema},
+           {"bench", "compare"},
+           {"task", "run"},
+           {"commit", report.commit},
+           {"device", device.name},
+           {"driver", device.driver},
+           {"scene", report.scene},
+           {"scene_hash", report.scene_hash},
+           {"triangles", report.triangles},
+           {"clock", report.clock},
+           {"version", report.version},
+           {"command", report.command},
+           {"scene_name", report.scene_name},
+           {"peer_note", text_or_null(report.peer_note)},
+           {"platform", device.platform},
+           {"opencl", device.opencl},
+           {"device_kind", device.kind},
+           {"compute_units", device.compute_units},
+           {"complete", device.complete}};
+  row["options"] = Json::object();
+  for (const auto& [name, value] : report.options) row["options"][name] = value;
+  row["methods"] = methods_json(device);
+  return row;
+}
+
+void read_run_row(const Json& row, Report& report) {
+  report.version = row.at("version");
+  report.commit = row.at("commit");
+  report.command = row.at("command");
+  report.scene = row.at("scene");
+  report.scene_name = row.at("scene_name");
+  report.scene_hash = row.at("scene_hash");
+  report.triangles = row.at("triangles");
+  report.clock = row.at("clock");
+  report.peer_note = text_of(row.at("peer_note"));
+  report.options.clear();
+  for (const auto& [name, value] : row.at("options").items()) report.options.emplace_back(name, value);
+  DeviceReport device;
+  device.name = row.at("device");
+  device.driver = row.at("driver");
+  device.platform = row.at("platform");
+  device.opencl = row.at("opencl");
+  device.kind = row.at("device_kind");
+  device.compute_units = row.at("compute_units");
+  device.complete = row.at("complete");
+  read_methods(row.at("methods"), device);
+  report.devices.push_back(std::move(device));
+}
+
 }  // namespace
+
+std::string to_rows_text(const Report& report) {
+  std::string out;
+  const auto put = [&](const Json& row) {
+    out += row.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  };
+  for (const DeviceReport& device : report.devices) {
+    put(run_row(report, device));
+    for (const Json& row : rows_of(report, device)) put(row);
+  }
+  return out;
+}
+
+std::vector<Report> from_rows_text(const std::string& text, const std::string& source) {
+  std::vector<Report> reports;
+  std::size_t number = 0;
+  try {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      ++number;
+      if (line.empty()) continue;
+      const Json row = Json::parse(line);
+      if (row.at("bench") != "compare" || row.at("schema") != kSchema)
+        throw Error(ErrorCode::kBadScene, "not a row of a comparison, schema " + std::to_string(kSchema));
+      if (row.at("task") == "run") {
+        // Runs of several devices are rows of one command.
+        if (reports.empty() || reports.back().command != row.at("command") ||
+            reports.back().commit != row.at("commit") || reports.back().scene_hash != row.at("scene_hash"))
+          reports.emplace_back();
+        read_run_row(row, reports.back());
+      } else if (reports.empty()) {
+        throw Error(ErrorCode::kBadScene, "no row of task run before it");
+      } else {
+        read_row(row, reports.back().devices.back());
+      }
+    }
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::kBadScene, source + ", line " + std::to_string(number) + ": " + error.what());
+  }
+  return reports;
+}
 
 std::string to_json_text(const Report& report) {
   Json out{{"schema", kSchema},

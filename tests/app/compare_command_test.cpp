@@ -1,5 +1,6 @@
 // gnomon compare from end to end on tiny scenes: rows, page, time, Ctrl-C and going on.
 #include <catch2/catch.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -48,7 +49,8 @@ json read_report(const Folder& folder) {
 
 TEST_CASE("compare measures every method on the same rays and writes page, rows and charts") {
   const Folder folder;
-  const auto outcome = run(command(folder.file("r.html"), {"--json", "--quiet"}));
+  const auto outcome =
+      run(command(folder.file("r.html"), {"--json", "--quiet", "--rows", folder.file("r.jsonl")}));
   CAPTURE(outcome.out, outcome.err);
   REQUIRE(outcome.status == 0);
   const json document = json::parse(outcome.out);
@@ -66,7 +68,7 @@ TEST_CASE("compare measures every method on the same rays and writes page, rows 
   }
   for (const char* name :
        {"sah-balanced", "sah-fast", "sah-best", "pah-window@light", "pah-window+spfh@light",
-        "pah-window+lsph@light", "pah-window+sah@light", "sah-balanced/fast-hits"}) {
+        "pah-window+lsph@light", "pah-window+sah@light", "sah-balanced/fast-hits", "auto"}) {
     CAPTURE(name);
     REQUIRE(methods.contains(name));
   }
@@ -103,6 +105,52 @@ TEST_CASE("compare measures every method on the same rays and writes page, rows 
     REQUIRE(std::abs(off) < 5.0 * row.at("standard_error").get<double>());
   }
   REQUIRE(predicted);
+
+  // A plan's decision for each kind of rays asked for, and for each light alone.
+  std::set<std::string> decided;
+  for (const json& row : rows_of(report, "decision")) {
+    CAPTURE(row.dump());
+    decided.insert(row.at("rays").get<std::string>());
+    REQUIRE(row.at("method") == "auto");
+    REQUIRE(row.at("reason").get<std::string>().size() > 3);
+    REQUIRE(row.at("cost") <= row.at("baseline_cost"));
+    REQUIRE(row.at("planning_share") > 0.0);
+  }
+  for (const char* rays : {"primary", "shadow", "light"}) {
+    CAPTURE(rays);
+    REQUIRE(decided.contains(rays));
+  }
+  // Sizes rise fourfold to the scene's own; the whole scene's build has a ratio to the baseline's.
+  std::set<int> sizes;
+  for (const json& row : rows_of(report, "size")) {
+    CAPTURE(row.dump());
+    sizes.insert(row.at("size").get<int>());
+    REQUIRE(row.at("thinned") == true);  // no cottage has fewer triangles
+    REQUIRE(row.at("build_wall_s").size() >= 1);
+    REQUIRE(row.at("build_ratio").at("median") > 0.0);
+    REQUIRE(row.at("trace_ratio").at("median") > 0.0);
+  }
+  REQUIRE(sizes.size() >= 2);
+  REQUIRE(*sizes.rbegin() == report.at("triangles"));
+  // The same rays through each tree of a light.
+  std::map<std::string, std::set<int>> counts;
+  std::map<std::string, std::set<std::string>> area_methods;
+  for (const json& row : rows_of(report, "area")) {
+    CAPTURE(row.dump());
+    counts[row.at("area")].insert(row.at("ray_count").get<int>());
+    area_methods[row.at("area")].insert(row.at("method").get<std::string>());
+    REQUIRE(row.at("boxes_per_ray") > 0.0);
+  }
+  REQUIRE_FALSE(counts.empty());
+  for (const auto& [area, rays] : counts) {
+    CAPTURE(area);
+    REQUIRE(rays.size() == 1);
+    REQUIRE(area_methods.at(area) == std::set<std::string>{"auto", "pah", "sah-balanced"});
+    REQUIRE(decided.contains(area));
+  }
+  // Rows of a file are what their schema says, and their own twins.
+  REQUIRE(run({"rows", "check", folder.file("r.jsonl"), "-q"}).err == "");
+  REQUIRE(run({"rows", "diff", folder.file("r.jsonl"), folder.file("r.jsonl"), "-q"}).status == 0);
 
   const auto names = folder.names();
   std::size_t charts = 0;
@@ -171,6 +219,52 @@ TEST_CASE("where time is short less is measured, and the page says what was left
   REQUIRE_THAT(program::read_text(folder.file("r.html")),
                Contains("What was left out") && Contains("the budget is"));
   REQUIRE_THAT(outcome.err, Contains("left out: "));
+}
+
+TEST_CASE("a scene from a file is made smaller by leaving triangles out, and the page says so") {
+  const Folder folder;
+  REQUIRE(run({"scene", "cottage", "--triangles", "7k", "-o", folder.file("c.glb"), "-q"}).status == 0);
+  const auto outcome = run({"compare", folder.file("c.glb"), "--methods", "sah-fast", "--rays", "primary",
+                            "--ray-count", "2k", "--rounds", "1", "-o", folder.file("r.html"), "--quiet"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const auto sizes = rows_of(read_report(folder), "size");
+  REQUIRE(sizes.size() == 6);
+  for (const json& row : sizes) REQUIRE(row.at("thinned") == true);
+  REQUIRE_THAT(program::read_text(folder.file("r.html")), Contains("triangles left out evenly"));
+}
+
+TEST_CASE("several devices have a section each, and one table of rounds that took turns") {
+  const Folder folder;
+  program::Setup setup;
+  setup.environment["POCL_DEVICES"] = "pthread basic";
+  const auto outcome = run({"compare", "gen:random:7k", "--methods", "sah-balanced/portable", "--rays",
+                            "primary", "--devices", "0,1", "--ray-count", "2k", "--judged-rays", "100",
+                            "--rounds", "2", "-o", folder.file("r.html"), "--rows", folder.file("r.jsonl")},
+                           setup);
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  const json report = read_report(folder);
+  REQUIRE(report.at("devices").size() == 2);
+  std::set<std::string> hashes;
+  for (const json& device : report.at("devices")) {
+    std::size_t across = 0;
+    for (const json& row : device.at("rows")) {
+      if (row.at("task") == "build" && row.at("method") == "sah-balanced")
+        hashes.insert(row.at("tree_hash").get<std::string>());
+      if (row.at("task") == "size") REQUIRE(row.at("thinned") == false);
+      if (row.at("task") != "across") continue;
+      CAPTURE(row.dump());
+      ++across;
+      REQUIRE(row.at("wall_s").size() == 2);
+      REQUIRE(row.at("ratio").at("n") == 2);
+      REQUIRE((row.at("rays").is_null() || row.at("ray_count") == 2000));
+    }
+    REQUIRE(across == 2);
+  }
+  REQUIRE(hashes.size() == 1);
+  REQUIRE_THAT(program::read_text(folder.file("r.html")), Contains("<table class=\"devices\">"));
+  REQUIRE(run({"rows", "check", folder.file("r.jsonl"), "-q"}).err == "");
 }
 
 TEST_CASE("a file of rays is a kind of rays") {

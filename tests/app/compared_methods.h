@@ -5,10 +5,10 @@ namespace program {
 
 #ifdef GNOMON_HAS_EMBREE
 inline constexpr bool kHasPeers = true;
-inline constexpr const char* kComparedMethods = "sah,pah-window,embree";
+inline constexpr const char* kComparedMethods = "sah-fast,sah-best,sah-balanced/fast,pah-window,auto,embree";
 #else
 inline constexpr bool kHasPeers = false;
-inline constexpr const char* kComparedMethods = "sah,pah-window";
+inline constexpr const char* kComparedMethods = "sah-fast,sah-best,sah-balanced/fast,pah-window,auto";
 #endif
 
 }  // namespace program

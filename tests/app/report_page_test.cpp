@@ -127,9 +127,9 @@ std::vector<std::array<double, 2>> points_of(const std::string& page) {
 void check_all(const json& seen) {
   CAPTURE(seen.at("texts_outside").dump(), seen.dump(1));
   REQUIRE(seen.at("problems").empty());
-  for (const char* chart :
-       {"pareto-accuracy", "pareto-memory", "gain", "build-trace", "break-even", "boxes", "triangles",
-        "prediction-primary", "prediction-shadow", "prediction-light", "errors"}) {
+  for (const char* chart : {"pareto-accuracy", "pareto-memory", "gain", "build-trace", "break-even", "boxes",
+                            "triangles", "prediction-primary", "prediction-shadow", "prediction-light",
+                            "errors", "size-build", "size-trace", "areas"}) {
     CAPTURE(chart);
     REQUIRE(seen.at("charts").contains(chart));
     if (chart != std::string("break-even")) REQUIRE(seen.at("charts").at(chart) > 0);

@@ -39,3 +39,23 @@ TEST_CASE("what is called after a round may end the contest") {
                     int);
   CHECK(contest[0].rounds.wall_s.size() == 2);
 }
+
+TEST_CASE(
+    "one that takes most of a round sits out the others where they would not fit with it, never the first") {
+  double time = 0.0;
+  const auto takes = [&](double seconds) { return [&time, seconds] { time += seconds; }; };
+  const auto rounds_of = [&](std::vector<Contestant> contest, double deadline) {
+    time = 0.0;
+    run_contest(contest, 5, deadline, [&] { return time; });
+    std::vector<std::size_t> rounds;
+    for (const Contestant& contestant : contest) rounds.push_back(contestant.rounds.wall_s.size());
+    return rounds;
+  };
+  using Counts = std::vector<std::size_t>;
+  CHECK(rounds_of({{takes(1), {}}, {takes(10), {}}, {takes(2), {}}}, 65.0) == Counts{5, 5, 5});
+  CHECK(rounds_of({{takes(1), {}}, {takes(10), {}}, {takes(2), {}}}, 64.0) == Counts{5, 1, 5});
+  CHECK(rounds_of({{takes(1), {}}, {takes(10), {}}, {takes(2), {}}}, 20.0) == Counts{3, 1, 3});
+  // Not half of a round: nobody sits out, and rounds are fewer.
+  CHECK(rounds_of({{takes(5), {}}, {takes(5), {}}, {takes(5), {}}}, 64.0) == Counts{4, 4, 4});
+  CHECK(rounds_of({{takes(10), {}}, {takes(1), {}}}, 40.0) == Counts{3, 3});
+}

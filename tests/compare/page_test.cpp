@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "gnomon/base/error.h"
 #include "gnomon/compare/axis.h"
@@ -58,7 +59,88 @@ TEST_CASE("each row of the JSON stands by itself") {
     if (row.at("task") != "trace" || row.at("method") != "sah-best" || row.at("rays") != "primary") continue;
     REQUIRE(row.at("real_time") == 1e6);  // 1 s for 1000 rays, in ns
   }
-  CHECK(names.size() == 4 * (1 + 2 + 2) + 3 * 2 + 1);
+  CHECK(names.size() == 4 * (1 + 2 + 2) + 3 * 2 + 4 + 3 + 1 + 1);
+}
+
+TEST_CASE("a report comes back from its rows, but for pictures and what a rerun needs") {
+  Report report = sample_report();
+  Report other = report;
+  other.command = "another";
+  const auto back = from_rows_text(to_rows_text(report) + to_rows_text(other), "there");
+  REQUIRE(back.size() == 2);
+  report.devices[0].pictures = other.devices[0].pictures = {};
+  report.devices[0].done = other.devices[0].done = {};
+  CHECK(back[0] == report);
+  CHECK(back[1] == other);
+  for (const char* text : {"{", R"({"bench": "spine", "schema": 1})",
+                           R"({"bench": "compare", "schema": 1, "task": "build", "method": "m"})"}) {
+    CAPTURE(text);
+    REQUIRE_THROWS_WITH(from_rows_text(text, "old.jsonl"), Contains("old.jsonl, line 1"));
+  }
+}
+
+TEST_CASE("a row's ratio is of the same round, the baseline's over its own") {
+  std::size_t seen = 0;
+  std::istringstream lines(to_rows_text(sample_report()));
+  for (std::string line; std::getline(lines, line);) {
+    const auto row = nlohmann::json::parse(line);
+    CAPTURE(line);
+    if (row.at("task") == "build" && row.at("method") == "sah-best") {
+      REQUIRE(row.at("ratio") == nlohmann::json{{"median", 0.25}, {"min", 0.25}, {"max", 0.25}, {"n", 3}});
+      ++seen;
+    }
+    if (row.at("task") == "trace" && row.at("method") == "sah-best" && row.at("rays") == "bounce") {
+      REQUIRE(row.at("ratio") == nlohmann::json{{"median", 2.0}, {"min", 1.6}, {"max", 2.0}, {"n", 3}});
+      ++seen;
+    }
+    if (row.at("task") == "size" && row.at("method") == "sah-fast") {
+      REQUIRE(row.at("build_ratio").at("median") == 2.0);
+      REQUIRE(row.at("trace_ratio").at("median") == 1.0);
+      ++seen;
+    }
+  }
+  CHECK(seen == 4);
+}
+
+TEST_CASE(
+    "several devices are one table: their trees, their wrong answers, and ratios of rounds that took turns") {
+  Report report = sample_report();
+  report.devices.push_back(report.devices[0]);
+  report.devices[1].name = "another";
+  report.devices[0].across = {{"", 0, {{2.0, 3.0}, {2.0, 3.0}}}, {"primary", 1000, {{1.0, 1.0}, {1.0, 1.0}}}};
+  report.devices[1].across = {{"", 0, {{4.0, 4.0}, {4.0, 4.0}}},
+                              {"primary", 1000, {{8.0, 10.0}, {8.0, 10.0}}}};
+  const std::string page = report_page(report);
+  const std::size_t from = page.find("<table class=\"devices\">");
+  REQUIRE(from != std::string::npos);
+  const std::string table = page.substr(from, page.find("</table>", from) - from);
+  CAPTURE(table);
+  CHECK(count_of(table, "<tr>") == 3);
+  CHECK(count_of(table, "<td>01234567</td>") == 2);
+  CHECK(count_of(table, "<td>0 of 200</td>") == 2);
+  CHECK_THAT(table,
+             Contains("<td>0.625<small>0.500 to 0.750</small></td><td>0.113<small>0.100 to 0.125</small>"));
+  CHECK_THAT(report_page(sample_report()), !Contains("class=\"devices\""));
+  CHECK(from_rows_text(to_rows_text(report), "there").at(0).devices.at(1).across == report.devices[1].across);
+}
+
+TEST_CASE("every decision of a plan is on the page, with its reason and what planning cost") {
+  const std::string page = report_page(sample_report());
+  CHECK_THAT(page, Contains("What auto decided") && Contains("sah-mix<small>10 % &lt;cheaper&gt;</small>") &&
+                       Contains("<td>0.900</td>") && Contains("<td>4.5</td>"));
+  Report none = sample_report();
+  none.devices[0].decisions.clear();
+  CHECK_THAT(report_page(none), !Contains("What auto decided"));
+}
+
+TEST_CASE("gains by light are the baseline's cost over a method's") {
+  for (const Chart& chart : charts_of(sample_report(), sample_report().devices[0])) {
+    if (chart.name != "areas") continue;
+    CHECK_THAT(chart.inside, Contains("pah: 2.00, 26.00 against 13.00") && Contains("auto: 4.00") &&
+                                 Contains("light 0 (a &lt;sun&gt;)"));
+    return;
+  }
+  FAIL("no chart of areas");
 }
 
 TEST_CASE("a text that is no report is refused with its name and what to do") {
@@ -87,8 +169,9 @@ TEST_CASE("the CSV has a line for each method and kind, with as many cells as th
 TEST_CASE("the page holds every chart, asks nothing of a network and lets no text break out") {
   const Report report = sample_report();
   const std::string page = report_page(report);
-  for (const char* chart : {"pareto-accuracy", "pareto-memory", "gain", "build-trace", "break-even", "boxes",
-                            "triangles", "prediction-primary", "prediction-bounce", "errors"}) {
+  for (const char* chart :
+       {"pareto-accuracy", "pareto-memory", "gain", "build-trace", "break-even", "boxes", "triangles",
+        "prediction-primary", "prediction-bounce", "errors", "size-build", "size-trace", "areas"}) {
     CAPTURE(chart);
     REQUIRE_THAT(page, Contains("<figure id=\"" + std::string(chart) + "\">"));
   }
@@ -130,7 +213,7 @@ TEST_CASE("an interrupted report says so and has the charts that its rows allow"
   device.pictures = {};
   const std::string page = report_page(report);
   CHECK_THAT(page, Contains("This report is not complete"));
-  CHECK(count_of(page, "<svg ") == 2);  // predictions
+  CHECK(count_of(page, "<svg ") == 5);  // predictions, sizes, areas
   CHECK_THAT(page, !Contains("type=\"range\""));
 }
 

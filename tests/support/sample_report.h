@@ -70,6 +70,19 @@ inline Report sample_report() {
   add(device, {"sah-best", Family::kSurface, {4.0, 4.0, 4.0}, {1.0, 1.0, 1.25}, {2.0, 2.0, 2.5}, 2 << 20, 0});
   add(device,
       {"embree-default", Family::kPeer, {0.25, 0.25, 0.25}, {0.5, 0.5, 0.5}, {1.0, 1.0, 1.0}, 3 << 20, 2});
+  for (const auto& [name, seconds] : {std::pair{"sah-balanced", 1.0}, std::pair{"sah-fast", 0.5}})
+    for (const double size : {308.0, 1234.0})
+      device.sizes.push_back({name,
+                              "primary",
+                              static_cast<std::uint64_t>(size),
+                              1000,
+                              true,
+                              {{seconds * size, seconds * size}, {seconds, seconds}},
+                              {{4.0, 4.0}, {4.0, 4.0}}});
+  device.areas = {{"sah-balanced", "light 0 (a <sun>)", 1000, 20.0, 5.0},
+                  {"pah", "light 0 (a <sun>)", 1000, 10.0, 2.5},
+                  {"auto", "light 0 (a <sun>)", 1000, 5.0, 1.25}};
+  device.decisions = {{"auto", "primary", "closest", 1e6, "sah-mix", "10 % <cheaper>", 640, 20.0, 18.0, 4.5}};
   device.left_out = {{"pah-plane@light", "build", "no time: the budget is 1 s"}};
   device.done = {"builds", "trace primary", "trace bounce"};
   device.pictures.png = {{"", "not really a PNG"}, {"sah-balanced", std::string("\0\1\2\3", 4)}};

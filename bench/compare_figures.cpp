@@ -1,0 +1,217 @@
+// Writes what README, the page of devices and the pictures show of comparisons, from stored rows and from
+// nothing else; or checks that they are what the rows give.
+//
+//   compare_figures COMPARE.jsonl DEVICES.jsonl README.md DEVICES.md PICTURES [--check]
+//   compare_figures --page COMPARE.jsonl PAGE.html    the first scene's page, without the pictures that rows
+//   do not hold
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "gnomon/compare/analysis.h"
+#include "gnomon/compare/charts.h"
+#include "gnomon/compare/method.h"
+#include "gnomon/compare/page.h"
+#include "gnomon/compare/report_json.h"
+#include "gnomon/compare/words.h"
+#include "page_file.h"
+
+namespace {
+
+using namespace gnomon;
+using namespace gnomon::compare;
+namespace fs = std::filesystem;
+
+std::string range(const Spread& s) {
+  if (s.count == 0) return "–";
+  return significant(s.median) + " (" + significant(s.min) + "–" + significant(s.max) + ")";
+}
+
+// Of several reports of the same scene and as many devices the last one counts.
+std::vector<Report> newest(const std::string& file) {
+  std::vector<Report> kept;
+  for (Report& report : from_rows_text(page::read(file), file)) {
+    const auto old = std::find_if(kept.begin(), kept.end(), [&](const Report& other) {
+      return other.scene_hash == report.scene_hash && other.devices.size() == report.devices.size();
+    });
+    if (old != kept.end()) {
+      *old = std::move(report);
+      continue;
+    }
+    kept.push_back(std::move(report));
+  }
+  return kept;
+}
+
+const BuildRow* build_of(const DeviceReport& device, const std::string& method) {
+  const auto found = std::find_if(device.builds.begin(), device.builds.end(),
+                                  [&](const BuildRow& row) { return row.method == method; });
+  return found == device.builds.end() ? nullptr : &*found;
+}
+
+const TraceRow* trace_of(const DeviceReport& device, const std::string& method, const std::string& kind) {
+  const auto found = std::find_if(device.traces.begin(), device.traces.end(), [&](const TraceRow& row) {
+    return row.method == method && row.kind == kind;
+  });
+  return found == device.traces.end() ? nullptr : &*found;
+}
+
+std::string option(const Report& report, const std::string& name) {
+  for (const auto& [key, value] : report.options)
+    if (key == name) return value;
+  return "–";
+}
+
+std::string scene_of(const Report& report) {
+  return report.scene_name + ", " + std::to_string(report.triangles) + " triangles";
+}
+
+std::string methods_table(const Report& report) {
+  const DeviceReport& device = report.devices.front();
+  const BuildRow* const base = build_of(device, kBaseline);
+  if (base == nullptr) return "";
+  std::string out =
+      "| method | build | tracing, all kinds | memory | wrong answers |\n|---|---|---|---|---|\n";
+  for (const MethodFacts& method : device.methods) {
+    const BuildRow* const build = build_of(device, method.name);
+    if (method.name == kBaseline || build == nullptr) continue;
+    const Wrong wrong = wrong_of(device, method.name);
+    out += "| " + method.name + " | " + range(build_gain(device, kBaseline, method.name, report.clock)) +
+           " | " + range(trace_gain(device, kBaseline, method.name, kAllKinds, report.clock)) + " | " +
+           fixed(static_cast<double>(build->bytes) / static_cast<double>(base->bytes), 2) + " | " +
+           std::to_string(wrong.wrong) + " of " + std::to_string(wrong.judged) + " |\n";
+  }
+  return out;
+}
+
+std::string readme_section(const std::vector<Report>& reports) {
+  std::string out =
+      "![Speed of tracing by method, with its spread](bench/pictures/compare-gain.svg)\n\n"
+      "[PoCL, its portable path and Mesa's rusticl](bench/results/devices.md) beside each other.\n\n";
+  for (const Report& report : reports) {
+    const DeviceReport& device = report.devices.front();
+    const Advice advice = advise(report, device);
+    out += "**" + scene_of(report) + "**, on " + device.name + " (driver " + device.driver + "), commit " +
+           report.commit + ", `" + report.command + "`:\n\n";
+    for (const std::string& sentence : {advice.use, advice.gain, advice.cost})
+      if (!sentence.empty()) out += "> " + sentence + "\n";
+    out += "\nTimes as fast as " + std::string(kBaseline) +
+           ", round by round: median (least–greatest); memory over its.\n\n" + methods_table(report) + "\n";
+  }
+  return out;
+}
+
+// Charts of the first scene.
+std::map<std::string, std::string> pictures(const std::vector<Report>& reports) {
+  std::map<std::string, std::string> out;
+  if (reports.empty()) return out;
+  for (const Chart& chart : charts_of(reports.front(), reports.front().devices.front()))
+    if (chart.name == "pareto-memory" || chart.name == "gain")
+      out["compare-" + chart.name + ".svg"] = chart.file;
+  return out;
+}
+
+std::string devices_table(const Report& report) {
+  const std::vector<std::string> kinds = kinds_of(report.devices.front());
+  std::string out = "| device | tree | wrong answers | build |";
+  std::string rule = "|---|---|---|---|";
+  for (const std::string& kind : kinds) {
+    out += " " + kind + " |";
+    rule += "---|";
+  }
+  out += "\n" + rule + "\n";
+  for (const DeviceReport& device : report.devices) {
+    const BuildRow* const build = build_of(device, kBaseline);
+    const Wrong wrong = wrong_of(device, kBaseline);
+    out += "| " + device.name + " (" + device.platform + ", driver " + device.driver + ", " +
+           std::to_string(device.compute_units) + " compute units) | " +
+           (build == nullptr ? "–" : "`" + build->tree_hash + "`") + " | " + std::to_string(wrong.wrong) +
+           " of " + std::to_string(wrong.judged) + " | " + range(across_gain(report, device, "")) + " |";
+    for (const std::string& kind : kinds) out += " " + range(across_gain(report, device, kind)) + " |";
+    out += "\n";
+  }
+  return out;
+}
+
+// What each device gains by methods that are there, from its own rounds.
+std::string paths_table(const Report& report) {
+  std::string out =
+      "| device | method | flavour | rays | boxes a ray | triangles a ray | of sah-balanced's speed |\n"
+      "|---|---|---|---|---|---|---|\n";
+  for (const DeviceReport& device : report.devices) {
+    for (const MethodFacts& method : device.methods) {
+      const BuildRow* const build = build_of(device, method.name);
+      for (const std::string& kind : kinds_of(device)) {
+        const TraceRow* const row = trace_of(device, method.name, kind);
+        if (row == nullptr || build == nullptr) continue;
+        out += "| " + device.name + " | " + method.name + " | " + build->flavour + " | " +
+               std::to_string(row->rays) + " " + kind + " | " +
+               (row->counted ? fixed(row->boxes_per_ray, 3) : "–") + " | " +
+               (row->counted ? fixed(row->triangles_per_ray, 3) : "–") + " | " +
+               range(trace_gain(device, kBaseline, method.name, kind, report.clock)) + " |\n";
+      }
+    }
+  }
+  return out;
+}
+
+std::string devices_page(const std::vector<Report>& reports) {
+  std::string out =
+      "# Over devices\n\n<!-- Written by compare_figures from devices.jsonl; take rows with bench/rerun.sh "
+      "devices. -->\n\n"
+      "The same method on every OpenCL device at hand. Trees are to have the same hash everywhere. Times are "
+      "ratios of "
+      "rounds that\ntook turns in one process, above 1 is faster than the first device: median "
+      "(least–greatest). Counts "
+      "are exact; the packet\nflavour counts boxes of wide trees, the thread flavour those of binary ones.\n";
+  for (const Report& report : reports) {
+    out += "\n## " + scene_of(report) + "\n\n`" + report.command + "`, commit " + report.commit + ", " +
+           option(report, "rounds") + " rounds at most.\n\n" + devices_table(report) +
+           "\nMethods on each device, in rounds of that device alone:\n\n" + paths_table(report);
+  }
+  return out;
+}
+
+// One file that is to hold a text.
+bool settle(const std::string& file, const std::string& text, bool check) {
+  const bool same = fs::exists(file) && page::read(file) == text;
+  if (same) return true;
+  if (check) {
+    std::fprintf(stderr, "%s is not what the stored rows give: run bench/figures.sh\n", file.c_str());
+    return false;
+  }
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw std::runtime_error("cannot write " + file);
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 6 && !(argc == 4 && std::string(argv[1]) == "--page")) {
+    std::fprintf(
+        stderr,
+        "usage: compare_figures COMPARE.jsonl DEVICES.jsonl README.md DEVICES.md PICTURES [--check]\n"
+        "       compare_figures --page COMPARE.jsonl PAGE.html\n");
+    return 2;
+  }
+  try {
+    if (argc == 4) return settle(argv[3], report_page(newest(argv[2]).at(0)), false) ? 0 : 1;
+    const bool check = argc > 6 && std::string(argv[6]) == "--check";
+    const std::vector<Report> reports = newest(argv[1]);
+    bool same =
+        settle(argv[3], page::with_section(page::read(argv[3]), "compare", readme_section(reports)), check);
+    same = settle(argv[4], devices_page(newest(argv[2])), check) && same;
+    for (const auto& [name, svg] : pictures(reports))
+      same = settle((fs::path(argv[5]) / name).string(), svg, check) && same;
+    return same ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "compare_figures: %s\n", error.what());
+    return 1;
+  }
+}

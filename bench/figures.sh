@@ -8,11 +8,12 @@ cd "$(dirname "$0")/.."
 build=${BUILD:-build}
 bash tests/install_packages.sh build demo
 cmake -S . -B "$build" -G Ninja -DGNOMON_BUILD_BENCH=ON >/dev/null
-cmake --build "$build" --parallel "$(nproc)" --target readme_table failure_map_page results_page
+cmake --build "$build" --parallel "$(nproc)" --target readme_table failure_map_page ray_aware_time_page results_page
 
 results=bench/results
 "$build/bench/readme_table" $results/spine.jsonl tests/consumer/main.cpp README.md
 "$build/bench/failure_map_page" $results/failure_map.jsonl $results/failure-map.md
+"$build/bench/ray_aware_time_page" $results/ray_aware_time.jsonl $results/ray-aware-time.md
 "$build/bench/results_page" $results/README.md
 bash bench/note_tables.sh
 git --no-pager diff --stat -- README.md $results host/notes 2>/dev/null || true

@@ -10,7 +10,7 @@ build=${BUILD:-build}
 bash tests/install_packages.sh build demo
 cmake -S . -B "$build" -G Ninja -DGNOMON_BUILD_BENCH=ON >/dev/null
 cmake --build "$build" --parallel "$(nproc)" --target readme_table compare_figures failure_map_page \
-  ray_aware_page stability_page results_page
+  ray_aware_page ray_aware_time_page stability_page results_page
 
 results=bench/results
 "$build/bench/readme_table" $results/spine.jsonl tests/consumer/main.cpp README.md
@@ -19,6 +19,7 @@ results=bench/results
 "$build/bench/failure_map_page" $results/failure_map.jsonl $results/failure-map.md
 "$build/bench/ray_aware_page" $results/ray_aware.jsonl $results/ray-aware.md
 "$build/bench/stability_page" $results/{stability,stability_peer,accuracy}.jsonl $results/stability.md
+"$build/bench/ray_aware_time_page" $results/ray_aware_time.jsonl $results/ray-aware-time.md
 "$build/bench/results_page" $results/README.md
 bash bench/note_tables.sh
 git --no-pager diff --stat -- README.md $results bench/pictures host/notes 2>/dev/null || true

@@ -42,6 +42,7 @@ take_ray_aware() {
     --scenes "${THESIS_SCENES:?a folder}"
   "$build/bench/ray_aware_bench" generated
 }
+take_ray_aware_time() { "$build/bench/ray_aware_time"; }
 take_reproduce() {
   gnomon reproduce --configs "${THESIS_CONFIGS:?the set-ups, a JSON file}" --scenes "${THESIS_SCENES:?a folder}" \
     --published "${THESIS_PUBLISHED:?the published results, a CSV file}" --rows /dev/fd/3 3>&1 >/dev/null

@@ -21,6 +21,7 @@
 #include "gnomon/device/trace_device.h"
 #include "gnomon/plan/child_order.h"
 #include "gnomon/plan/choose.h"
+#include "gnomon/plan/outlook.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon/scene/gltf_export.h"
 #include "gnomon/scene/import.h"

@@ -12,7 +12,7 @@ set(public_headers
   tree/build_options.h tree/bvh.h tree/bvh_check.h tree/wide.h tree/compact.h tree/build_reference.h tree/oracle.h tree/candidate_tree.h tree/top_level.h
   tree/optimise.h tree/tree_file.h tree/tree_export.h
   tree/merge_leaves.h tree/trace_reference.h
-  plan/ray_sample.h plan/child_order.h plan/optimise_for_rays.h plan/race.h plan/choose.h
+  plan/ray_sample.h plan/child_order.h plan/optimise_for_rays.h plan/race.h plan/choose.h plan/outlook.h
   cl/opencl.h cl/check.h cl/handle.h cl/device.h cl/context.h cl/launch.h
   device/build_device.h device/collapse_device.h device/optimise_device.h device/compact_device.h device/trace_device.h
   device/forest.h device/find_areas.h device/trace_areas.h

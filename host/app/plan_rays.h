@@ -1,4 +1,4 @@
-// The rays a plan is made for, and the plan made with a device: what `plan` and `trace --plan` share.
+// The rays a plan is made for, and the plan made with a device: what `plan` and --plan share.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -16,7 +16,8 @@ std::vector<NamedRays> read_record(const RayFileOptions& options) {
     const std::string kind(to_string(stratum.kind));
     auto place =
         std::find_if(out.begin(), out.end(), [&](const NamedRays& some) { return some.kind == kind; });
-    if (place == out.end()) place = out.insert(out.end(), {kind, {}});
+    if (place == out.end()) place = out.insert(out.end(), {kind, {}, 0});
+    place->traced += stratum.traced;
     place->rays.insert(place->rays.end(), first, last);
     first = last;
   }
@@ -55,7 +56,7 @@ std::vector<NamedRays> read_ray_file(const RayFileOptions& options) {
       throw Error(ErrorCode::kInvalidArgument,
                   "--kinds chooses from a record (.gnr); " + options.file + " holds raw rays");
     }
-    return {{"file", std::move(rays)}};
+    return {{"file", std::move(rays), 0}};
   } catch (const Error& error) {
     if (error.code() == ErrorCode::kIo) throw Error(ErrorCode::kBadScene, error.what());
     throw;

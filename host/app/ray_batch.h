@@ -30,6 +30,7 @@ CLI::Option* add_ray_file_options(CLI::App& command, RayFileOptions& options);
 struct NamedRays {
   std::string kind;  // "file" for raw ones
   std::vector<Ray> rays;
+  std::uint64_t traced = 0;  // as a record says; 0 for raw ones
 };
 // One entry for each kind in the file. Throws Error: kBadScene (also for a file that cannot be read, and for
 // kinds that it has no rays of), kInvalidArgument (kinds asked of raw rays), kOutOfMemory.

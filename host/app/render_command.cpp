@@ -12,9 +12,13 @@
 #include "gnomon/render/ray_recorder.h"
 #include "gnomon/render/render.h"
 #include "gnomon/render/tone.h"
+#include "gnomon/scene/ray_set.h"
 #include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
+#include "plan_choice.h"
+#include "planned_tracers.h"
+#include "render_rays.h"
 #include "scene_source.h"
 #include "tree_source.h"
 
@@ -27,6 +31,7 @@ struct Options {
   BuildOptions build;
   HeuristicOptions heuristic;
   std::string tree_file;  // empty: build one
+  PlanRequest plan;
   RenderOptions render;
   double exposure = 0.0;      // in steps of two around the automatic one
   std::uint32_t samples = 0;  // of path tracing; 0: a preview
@@ -43,8 +48,51 @@ struct Outcome {
   [[nodiscard]] std::uint64_t rays() const { return result.camera_rays + result.other_rays; }
 };
 
+// Upper bounds of what a picture can be to ask whether it is worth finding out: paths are rarely longer.
+constexpr double kMostRaysOfPath = 12.0;
+
+PlanOutcome plan_of(const Options& options, const cl::Context& context, const TimedBuild& build,
+                    const Scene& scene, const Progress& progress) {
+  if (!options.plan.instead.empty()) return no_plan(options.plan, options.plan.instead + " says which tree");
+  if (options.samples == 0) return no_plan(options.plan, "a preview has few rays; --samples plans");
+  const double paths =
+      static_cast<double>(options.render.width) * options.render.height * options.render.samples;
+  const double most =
+      options.plan.expected != 0 ? static_cast<double>(options.plan.expected) : kMostRaysOfPath * paths;
+  const std::vector<Ray> seen = primary_rays(scene, 256, options.render.seed);
+  PlanTask task{context, scene, build, {{Query::kClosest, seen, most}}, {}};
+  if (options.plan.name == "auto") {
+    const Outlook outlook = outlook_of(build.host, scene.triangles, task.to_come);
+    if (!outlook.pays) return plan_for(options.plan, task, progress);
+  }
+  const Tracer tracer(context, build.tree);
+  const std::vector<PlanRays> rays = rays_of_picture(context, tracer, scene, options.render, progress);
+  stop_if_interrupted();
+  task.to_come.clear();
+  for (const PlanRays& kind : rays) {
+    const double expected =
+        options.plan.expected != 0 ? static_cast<double>(options.plan.expected) : kind.expected;
+    task.to_come.push_back({kind.query, kind.probe, expected});
+  }
+  task.draw = [&] {
+    std::vector<PlanRays> drawn = rays;
+    for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i].expected = task.to_come[i].expected;
+    return drawn;
+  };
+  return plan_for(options.plan, task, progress);
+}
+
+RenderResult render_planned(const cl::Context& context, const Scene& scene, const Options& options,
+                            const TimedBuild& build, const PlanOutcome& plan, const Progress& progress,
+                            const RayObserver& observer) {
+  if (!plan.plan) return render_paths(context, build.tree, scene, options.render, progress, observer);
+  const PlannedTracers trees(context, scene, build, plan);
+  return render_paths(context, trees.tracers(), trees.closest_tree(), scene, options.render, progress,
+                      observer);
+}
+
 Outcome render_timed(const Options& options, const cl::Context& context, const TimedBuild& build,
-                     const Scene& scene, const Progress& progress) {
+                     const PlanOutcome& plan, const Scene& scene, const Progress& progress) {
   Outcome outcome;
   const auto start = std::chrono::steady_clock::now();
   RayRecorder recorder(options.record_rays, options.render.seed);
@@ -52,7 +100,7 @@ Outcome render_timed(const Options& options, const cl::Context& context, const T
   if (!options.record.empty()) observer = [&](const TracedRays& traced) { recorder.add(traced); };
   outcome.result = options.samples == 0
                        ? render(context, build.tree, scene, options.render, progress)
-                       : render_paths(context, build.tree, scene, options.render, progress, observer);
+                       : render_planned(context, scene, options, build, plan, progress, observer);
   outcome.record = recorder.record();
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.exposure =
@@ -109,12 +157,14 @@ void add_outcome(Json& document, const Options& options, const Outcome& outcome)
 }
 
 std::string facts_of(const Options& options, const cl::DeviceInfo& device, const Scene& scene,
-                     const std::string& heuristic, const TimedBuild& build, const Outcome& outcome) {
+                     const std::string& heuristic, const TimedBuild& build, const PlanOutcome& plan,
+                     const Outcome& outcome) {
   Facts facts;
   facts.add("device", describe(device));
   facts.add("scene", describe(scene));
   facts.add("heuristic", heuristic);
   facts.add("tree", describe(build));
+  facts.add("plan", describe(plan));
   facts.add("picture", options.file + ", " + std::to_string(options.render.width) + " x " +
                            std::to_string(options.render.height) + ", " +
                            std::to_string(options.render.samples) +
@@ -140,6 +190,11 @@ int run(Options options, Console& console) {
   }
   options.build.check();
   options.render.check();
+  options.plan.check();
+  if (options.plan.asked && options.plan.name != "auto" && options.samples == 0) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "--plan " + options.plan.name + " is for the rays of path tracing: give --samples, too");
+  }
   check(options.heuristic);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
@@ -147,7 +202,9 @@ int run(Options options, Console& console) {
       tree_for_use(context, scene, options.tree_file, with_heuristic(options.build, options.heuristic, scene),
                    {1, false}, console.progress());
   const BuildOptions& tree = build.options;
-  const Outcome outcome = render_timed(options, context, build, scene, console.progress());
+  const PlanOutcome plan = plan_of(options, context, build, scene, console.progress());
+  stop_if_interrupted();
+  const Outcome outcome = render_timed(options, context, build, plan, scene, console.progress());
   write_pictures(options, outcome);
   for (const std::string& note : outcome.result.notes) console.note(note);
   Json document = start_document("render");
@@ -158,9 +215,10 @@ int run(Options options, Console& console) {
   add_build(document, build);
   add_tree_file(document, build);
   add_outcome(document, options, outcome);
+  add_plan(document, plan);
   console.print(document);
-  console.print(
-      facts_of(options, context.device(), scene, describe(options.heuristic, tree, scene), build, outcome));
+  console.print(facts_of(options, context.device(), scene, describe(options.heuristic, tree, scene), build,
+                         plan, outcome));
   return 0;
 }
 
@@ -199,6 +257,8 @@ void add_render_command(CLI::App& program, OutputOptions& output, Action& action
   add_heuristic_options(*command, options->heuristic);
   add_build_options(*command, options->build);
   add_tree_file_option(*command, options->tree_file);
+  add_plan_options(*command, options->plan,
+                   "rays of a kind to come, that a tree must repay itself over; default: this picture's");
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(
@@ -211,8 +271,10 @@ void add_render_command(CLI::App& program, OutputOptions& output, Action& action
       "Examples:\n  gnomon render model.glb -o model.png\n"
       "  gnomon render gen:atrium -o atrium.png --samples 64 --record rays.gnr\n"
       "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png --preview 32");
-  command->callback(
-      [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
+  command->callback([&action, options, command] {
+    settle(*command, options->plan);
+    action = [options](Console& console) { return run(*options, console); };
+  });
 }
 
 }  // namespace gnomon::app

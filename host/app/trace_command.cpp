@@ -1,6 +1,5 @@
 // gnomon trace: sends a batch of rays through a tree and says how fast and how much work that was.
 #include <memory>
-#include <optional>
 
 #include "build_timing.h"
 #include "commands.h"
@@ -9,6 +8,7 @@
 #include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
+#include "plan_choice.h"
 #include "plan_rays.h"
 #include "ray_batch.h"
 #include "scene_source.h"
@@ -34,8 +34,7 @@ struct Options {
   std::uint64_t repeat = 5;
   RayFileOptions rays_in;
   std::string rays_out, hits_out;
-  std::string plan;  // empty: the tree of the build options
-  std::uint64_t expected = 16'777'216;
+  PlanRequest plan;
 };
 
 TraceFlavour flavour_from(const std::string& name) {
@@ -111,14 +110,15 @@ void add_trace(Json& document, const Options& options, const TimedTrace& trace, 
 }
 
 std::string facts_of(const Options& options, const cl::DeviceInfo& device, const Scene& scene,
-                     const std::string& heuristic, const TimedBuild& build, const TimedTrace& trace,
-                     std::size_t rays, bool any_hit) {
+                     const std::string& heuristic, const TimedBuild& build, const std::string& plan,
+                     const TimedTrace& trace, std::size_t rays, bool any_hit) {
   const double share =
       rays == 0 ? 0.0 : 100.0 * static_cast<double>(trace.hit_count) / static_cast<double>(rays);
   Facts facts;
   facts.add("device", describe(device));
   facts.add("scene", describe(scene));
   facts.add("heuristic", heuristic);
+  facts.add("plan", plan);
   facts.add("tree", describe(build));
   facts.add("rays", std::to_string(rays) + " " +
                         (options.rays_in.file.empty() ? options.kind : "from " + options.rays_in.file) +
@@ -142,46 +142,37 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
   return facts.text();
 }
 
-// The tree the plan keeps for these rays, where it is another one than the build options' own.
-struct Planned {
-  Plan plan;
-  DeviceBvh tree;
-  [[nodiscard]] const PlanTree& kept() const { return plan.trees[plan.decisions[0].tree]; }
-};
-
-std::optional<Planned> plan_of(const Options& options, const Scene& scene, const cl::Context& context,
-                               const DeviceBvh& tree, std::span<const Ray> rays, bool any_hit,
-                               const Progress& progress) {
-  if (options.plan.empty()) return std::nullopt;
-  PlanOptions how;
-  how.choice = options.plan;
-  how.check();
-  const auto expected = static_cast<double>(options.expected);
-  const Query query = any_hit ? Query::kAny : Query::kClosest;
-  PlanRays asked = options.rays_in.file.empty()
-                       ? rays_to_plan_for(*ray_kind_from(options.kind), scene, context, tree, expected,
-                                          options.seed, progress)
-                       : rays_to_plan_for(options.rays_in.file, query, rays, expected);
-  asked.query = query;
-  Planned out;
-  out.plan = make_plan(scene.triangles, std::span(&asked, 1), how, device_builder(context), progress);
-  out.tree = upload_bvh(context, out.kept().tree.bvh, scene.triangles);
-  return out;
-}
-
 // A learnt order is an order of slots, which the binary tree has not.
 void check_plan(const Options& options) {
-  if (options.plan.empty()) return;
-  PlanOptions how;
-  how.choice = options.plan;
-  how.check();
-  if (options.flavour == "thread" && options.plan != "sah") {
-    throw Error(
-        ErrorCode::kInvalidArgument,
-        "--flavour thread looks at the nearer child first whatever was learnt; use wide, packet, compact or "
-        "auto with --plan " +
-            options.plan);
-  }
+  options.plan.check();
+  if (!options.plan.asked || options.flavour != "thread" || options.plan.name == "sah") return;
+  throw Error(
+      ErrorCode::kInvalidArgument,
+      "--flavour thread looks at the nearer child first whatever was learnt; use wide, packet, compact or "
+      "auto with --plan " +
+          options.plan.name);
+}
+
+// Rays that this run traces: to warm up, timed, counted.
+double rays_traced(const Options& options, std::size_t rays) {
+  return static_cast<double>(rays) * static_cast<double>(options.repeat + 2);
+}
+
+PlanTask plan_task(const Options& options, const cl::Context& context, const Scene& scene,
+                   const TimedBuild& build, std::span<const Ray> rays, bool any_hit,
+                   const Progress& progress) {
+  const double expected = options.plan.expected != 0 ? static_cast<double>(options.plan.expected)
+                                                     : rays_traced(options, rays.size());
+  const Query query = any_hit ? Query::kAny : Query::kClosest;
+  const auto draw = [&options, &context, &scene, &build, rays, query, expected, progress] {
+    PlanRays asked = options.rays_in.file.empty()
+                         ? rays_to_plan_for(*ray_kind_from(options.kind), scene, context, build.tree,
+                                            expected, options.seed, progress)
+                         : rays_to_plan_for(options.rays_in.file, query, rays, expected);
+    asked.query = query;
+    return std::vector<PlanRays>{std::move(asked)};
+  };
+  return {context, scene, build, {{query, rays, expected}}, draw};
 }
 
 int run(const Options& options, Console& console) {
@@ -191,22 +182,25 @@ int run(const Options& options, Console& console) {
   const bool any_hit = wants_any_hit(options);
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const TimedBuild build =
+  TimedBuild build =
       tree_for_use(context, scene, options.tree_file, with_heuristic(options.build, options.heuristic, scene),
                    {1, true}, console.progress());
-  const BuildOptions& tree = build.options;
   const std::vector<Ray> rays = rays_of(options, scene, context, build.tree, console.progress());
   stop_if_interrupted();
-  const std::optional<Planned> planned =
-      plan_of(options, scene, context, build.tree, rays, any_hit, console.progress());
+  const PlanTask task = plan_task(options, context, scene, build, rays, any_hit, console.progress());
+  const PlanOutcome planned = plan_for(options.plan, task, console.progress());
   stop_if_interrupted();
-  const TimedTrace trace =
-      trace_timed(context, planned ? planned->tree : build.tree, rays, any_hit, how_to_trace(options),
-                  options.repeat, console.progress(),
-                  planned ? std::span<const float>(planned->kept().tree.ranks) : std::span<const float>());
+  std::span<const float> ranks;
+  if (const PlanTree* const kept = planned.tree(0)) {
+    adopt(build, task, *kept);
+    if (has_slots(context.device(), how_to_trace(options).flavour)) ranks = kept->tree.ranks;
+  }
+  const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, how_to_trace(options),
+                                       options.repeat, console.progress(), ranks);
   stop_if_interrupted();
   if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
   if (!options.hits_out.empty()) write_hits(options.hits_out, trace.hits);
+  const BuildOptions& tree = build.options;
   Json document = start_document("trace");
   add_device(document, &context.device());
   add_scene(document, options.scene, scene);
@@ -215,12 +209,10 @@ int run(const Options& options, Console& console) {
   add_build(document, build);
   add_tree_file(document, build);
   add_trace(document, options, trace, rays.size(), any_hit);
-  document["options"]["plan"] = planned ? Json(options.plan) : Json(nullptr);
-  document["plan"] = planned ? Json::parse(to_json(planned->plan)) : Json(nullptr);
+  add_plan(document, planned);
   console.print(document);
   console.print(facts_of(options, context.device(), scene, describe(options.heuristic, tree, scene), build,
-                         trace, rays.size(), any_hit) +
-                (planned ? "\nplan\n" + plan_table(planned->plan) : std::string()));
+                         describe(planned), trace, rays.size(), any_hit));
   return 0;
 }
 
@@ -279,16 +271,11 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
                     "order. Pays for rays in no order, such as bounces from all over the picture");
   add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")
       ->check(CLI::Range(1, 10000));
-  command
-      ->add_option(
-          "--plan", options->plan,
-          "trace through the tree that these rays need: auto, or one by name (gnomon plan --help). The build "
-          "options' tree then only says where rays start")
-      ->type_name("NAME");
-  add_expected_rays(*command, options->expected);
   add_build_options(*command, options->build);
   add_heuristic_options(*command, options->heuristic);
   add_tree_file_option(*command, options->tree_file);
+  add_plan_options(*command, options->plan,
+                   "rays to come, that a tree must repay itself over; default: those that this run traces");
   add_device_options(*command, options->device);
   add_output_options(*command, output);
   command->footer(explain_ray_kinds() + "\n" + kFiles +
@@ -296,8 +283,10 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
                   "  gnomon trace model.glb --rays-in my.rays --hits-out my.hits\n"
                   "  gnomon build model.glb -o model.gnb && gnomon trace model.glb --tree model.gnb\n"
                   "  gnomon trace model.glb --rays-in rays.gnr --kinds shadow");
-  command->callback(
-      [&action, options] { action = [options](Console& console) { return run(*options, console); }; });
+  command->callback([&action, options, command] {
+    settle(*command, options->plan);
+    action = [options](Console& console) { return run(*options, console); };
+  });
 }
 
 }  // namespace gnomon::app

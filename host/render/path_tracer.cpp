@@ -80,9 +80,9 @@ void refuse_many_lights(const cl::DeviceInfo& device, std::size_t lights) {
 
 class PathTracer::Work {
  public:
-  Work(const cl::Context& context, const Tracer& tracer, const Scene& scene, const PathOptions& options)
+  Work(const cl::Context& context, const PathTracers& tracers, const Scene& scene, const PathOptions& options)
       : context_(context),
-        tracer_(tracer),
+        tracers_(tracers),
         options_(options),
         scene_(make_path_scene(scene, options)),
         at_once_(paths_at_once()),
@@ -128,7 +128,7 @@ class PathTracer::Work {
   }
 
   const cl::Context& context_;
-  const Tracer& tracer_;
+  const PathTracers tracers_;
   PathOptions options_;
   PathScene scene_;
   PathCounts counts_;
@@ -171,7 +171,8 @@ class PathTracer::Work {
       (bounce == 0 ? counts_.camera_rays : counts_.bounce_rays) += count;
       show(observer, bounce == 0 ? RayUse::kCamera : RayUse::kBounce, bounce, batch, room_.rays, room_.owners,
            count);
-      tracing_.add("trace", tracer_.enqueue_closest(room_.rays.mem.get(), room_.hits.mem.get(), count));
+      tracing_.add("trace",
+                   tracers_.closest.enqueue_closest(room_.rays.mem.get(), room_.hits.mem.get(), count));
       launch_on_scene(step_, count, room_.paths, room_.rays, room_.hits, room_.owners, room_.next_rays,
                       room_.shadow_rays, room_.lit, bounce, count);
       ask_lights(batch, observer, bounce, count);
@@ -193,7 +194,8 @@ class PathTracer::Work {
     if (asked == 0) return;
     counts_.shadow_rays += asked;
     show(observer, RayUse::kShadow, bounce + 1, batch, room_.asked_rays, room_.asked_owners, asked);
-    tracing_.add("trace", tracer_.enqueue_any(room_.asked_rays.mem.get(), room_.occluded.mem.get(), asked));
+    tracing_.add("trace",
+                 tracers_.any.enqueue_any(room_.asked_rays.mem.get(), room_.occluded.mem.get(), asked));
     launch(add_light_, asked, room_.paths, room_.asked_owners, room_.occluded, room_.lit, asked);
   }
 
@@ -245,7 +247,10 @@ class PathTracer::Work {
 
 PathTracer::PathTracer(const cl::Context& context, const Tracer& tracer, const Scene& scene,
                        const PathOptions& options)
-    : work_(std::make_unique<Work>(context, tracer, scene, options)) {}
+    : PathTracer(context, PathTracers{tracer, tracer}, scene, options) {}
+PathTracer::PathTracer(const cl::Context& context, const PathTracers& tracers, const Scene& scene,
+                       const PathOptions& options)
+    : work_(std::make_unique<Work>(context, tracers, scene, options)) {}
 PathTracer::PathTracer(PathTracer&&) noexcept = default;
 PathTracer::~PathTracer() = default;
 

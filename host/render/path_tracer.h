@@ -49,11 +49,20 @@ struct PathCounts {
   double shade_ms = 0.0;  // of everything else
 };
 
+// What traces rays that look for the nearest hit, and what traces those that ask lights: trees over the same
+// triangles give the same picture.
+struct PathTracers {
+  const Tracer& closest;
+  const Tracer& any;
+};
+
 class PathTracer {
  public:
   // `tracer` must trace a tree over scene.triangles on `context`; all three must outlive this. Through the
   // scene's first camera, else default_camera(scene). Throws Error: kInvalidArgument, kOutOfMemory, kDevice.
   PathTracer(const cl::Context& context, const Tracer& tracer, const Scene& scene,
+             const PathOptions& options = {});
+  PathTracer(const cl::Context& context, const PathTracers& tracers, const Scene& scene,
              const PathOptions& options = {});
   PathTracer(PathTracer&&) noexcept;
   ~PathTracer();

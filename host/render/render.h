@@ -44,7 +44,13 @@ struct RenderResult {
 [[nodiscard]] RenderResult render(const cl::Context& context, const DeviceBvh& tree, const Scene& scene,
                                   const RenderOptions& options = {}, const Progress& progress = {});
 
-// The same by path tracing. `observer` sees every ray that is traced.
+// The same by path tracing, through trees over scene.triangles. `tree` is the closest tracer's, for the heat
+// map. `observer` sees every ray that is traced.
+[[nodiscard]] RenderResult render_paths(const cl::Context& context, const PathTracers& tracers,
+                                        const DeviceBvh& tree, const Scene& scene,
+                                        const RenderOptions& options = {}, const Progress& progress = {},
+                                        const RayObserver& observer = {});
+// Through one tree.
 [[nodiscard]] RenderResult render_paths(const cl::Context& context, const DeviceBvh& tree, const Scene& scene,
                                         const RenderOptions& options = {}, const Progress& progress = {},
                                         const RayObserver& observer = {});

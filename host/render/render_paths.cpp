@@ -19,12 +19,19 @@ RenderResult render_paths(const cl::Context& context, const DeviceBvh& tree, con
                           const RenderOptions& options, const Progress& progress,
                           const RayObserver& observer) {
   options.check();
+  const Tracer tracer(context, tree);
+  return render_paths(context, {tracer, tracer}, tree, scene, options, progress, observer);
+}
+
+RenderResult render_paths(const cl::Context& context, const PathTracers& tracers, const DeviceBvh& tree,
+                          const Scene& scene, const RenderOptions& options, const Progress& progress,
+                          const RayObserver& observer) {
+  options.check();
   PathOptions how;
   how.width = options.width;
   how.height = options.height;
   how.seed = options.seed;
-  const Tracer tracer(context, tree);
-  PathTracer paths(context, tracer, scene, how);
+  PathTracer paths(context, tracers, scene, how);
   RenderResult result;
   std::optional<Tracer> counting;
   if (options.heat_map) {

@@ -1,4 +1,5 @@
-// gnomon plan and trace --plan: decisions in full, the same hits, and clear words for what cannot be.
+// gnomon plan, and --plan of build, trace and render: decisions in full, the same answers, no plan where rays
+// are few or another option says which tree, and clear words for what cannot be.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -46,20 +47,118 @@ TEST_CASE("trace --plan answers as trace does, for less work") {
     const std::vector<std::string> plain{"trace", "gen:cottage:8k", "--rays", kind,    "--count",
                                          "4k",    "--repeat",       "1",      "--json"};
     auto planned = plain;
-    planned.insert(planned.end(), {"--plan", "auto"});
+    planned.insert(planned.end(), {"--expect", "1G"});
     auto baseline = plain;
     baseline.insert(baseline.end(), {"--plan", "sah"});
     const json before = document_of(plain);
     const json after = document_of(planned);
     const json sah = document_of(baseline);
-    REQUIRE(before["plan"].is_null());
-    REQUIRE(after["options"]["plan"] == "auto");
-    REQUIRE(after["plan"]["decisions"][0]["kept"] != "sah");
-    REQUIRE(sah["plan"]["decisions"][0]["kept"] == "sah");
+    // 12000 rays repay nothing.
+    REQUIRE(before["options"]["plan"] == "auto");
+    REQUIRE(before["plan"]["made"] == false);
+    REQUIRE(before["plan"]["price_units"] > 0.05 * before["plan"]["work_units"].get<double>());
+    REQUIRE(before["plan"]["seconds"] == 0.0);
+    REQUIRE_THAT(before["plan"]["reason"].get<std::string>(), Catch::Contains("too few"));
+    REQUIRE(after["plan"]["made"] == true);
+    const json& chosen = after["plan"]["chosen"][0];
+    REQUIRE(chosen["tree"] == after["plan"]["decisions"][0]["kept"]);
+    REQUIRE(chosen["measured_saving"] > 0.02);
+    REQUIRE(chosen["predicted_saving"] > 0.02);
+    REQUIRE(after["plan"]["seconds"] > 0.0);
+    REQUIRE(sah["plan"]["chosen"][0]["tree"] == "sah");
     REQUIRE(after["hits"] == before["hits"]);
     REQUIRE(sah["hits"] == before["hits"]);
+    REQUIRE(after["tree"]["hash"] != before["tree"]["hash"]);
     REQUIRE(after["boxes_per_ray"] < 0.98 * sah["boxes_per_ray"].get<double>());
   }
+}
+
+TEST_CASE("options that say which tree leave no plan, and exclude one") {
+  for (const std::vector<std::string>& own : std::vector<std::vector<std::string>>{
+           {"--builder", "fast"}, {"--max-leaf", "4"}, {"--axes", "lsph"}}) {
+    CAPTURE(own);
+    std::vector<std::string> arguments{"trace", "gen:cottage:8k", "--count", "1k", "--expect",
+                                       "1G",    "--json"};
+    arguments.insert(arguments.end(), own.begin(), own.end());
+    const json document = document_of(arguments);
+    REQUIRE(document["options"]["plan"].is_null());
+    REQUIRE(document["plan"]["made"] == false);
+    REQUIRE_THAT(document["plan"]["reason"].get<std::string>(), Catch::Contains(own[0]));
+    arguments.insert(arguments.end(), {"--plan", "auto"});
+    REQUIRE(run(arguments).status == 2);
+  }
+}
+
+TEST_CASE("build keeps one tree for all rays to come, where it is told of them") {
+  const program::Folder folder;
+  const std::vector<std::string> plain{"build", "gen:cottage:8k", "--repeat", "1", "--json"};
+  const json untold = document_of(plain);
+  REQUIRE(untold["plan"]["made"] == false);
+  REQUIRE_THAT(untold["plan"]["reason"].get<std::string>(), Catch::Contains("--expect"));
+  auto told = plain;
+  told.insert(told.end(), {"--expect", "1G", "-o", folder.file("planned.gnb")});
+  const json planned = document_of(told);
+  REQUIRE(planned["plan"]["made"] == true);
+  REQUIRE(planned["plan"]["decisions"].size() == 3);
+  REQUIRE(planned["plan"]["chosen"].size() == 1);
+  REQUIRE(planned["plan"]["chosen"][0]["rays"] == "all");
+  REQUIRE(planned["plan"]["chosen"][0]["measured_saving"] > 0.0);
+  REQUIRE(planned["tree"]["hash"] != untold["tree"]["hash"]);
+  const json traced = document_of({"trace", "gen:cottage:8k", "--tree", folder.file("planned.gnb"), "--count",
+                                   "2k", "--repeat", "1", "--json"});
+  REQUIRE(traced["tree"]["hash"] == planned["tree"]["hash"]);
+  REQUIRE(traced["hits"] ==
+          document_of({"trace", "gen:cottage:8k", "--count", "2k", "--repeat", "1", "--json"})["hits"]);
+  auto few = plain;
+  few.insert(few.end(), {"--expect", "1k"});
+  REQUIRE(document_of(few)["plan"]["made"] == false);
+}
+
+TEST_CASE("build plans for the rays of a record, as many as it counted") {
+  const program::Folder folder;
+  const std::string record = folder.file("rays.gnr");
+  const json rendered = document_of({"render", "gen:cottage:8k", "-o", folder.file("a.png"), "--width", "64",
+                                     "--height", "48", "--samples", "2", "--record", record, "--json"});
+  REQUIRE(rendered["plan"]["made"] == false);
+  REQUIRE_THAT(rendered["plan"]["reason"].get<std::string>(), Catch::Contains("too few"));
+  const json few = document_of({"build", "gen:cottage:8k", "--repeat", "1", "--rays-in", record, "--json"});
+  REQUIRE(few["plan"]["made"] == false);
+  // All the rays that the picture traced, each with a cost.
+  const double rays = rendered["rays"].get<double>();
+  REQUIRE(few["plan"]["work_units"] > rays);
+  REQUIRE(few["plan"]["work_units"] < 1000.0 * rays);
+  const json many = document_of({"build", "gen:cottage:8k", "--repeat", "1", "--rays-in", record, "--kinds",
+                                 "shadow", "--expect", "1G", "--json"});
+  REQUIRE(many["plan"]["made"] == true);
+  REQUIRE(many["plan"]["decisions"].size() == 1);
+  REQUIRE(many["plan"]["decisions"][0]["query"] == "any");
+}
+
+TEST_CASE("a planned picture is the plain one to the last byte, by less work") {
+  const program::Folder folder;
+  const std::vector<std::string> plain{"render", "gen:cottage:8k", "--width", "64",    "--height",
+                                       "48",     "--samples",      "2",       "--json"};
+  const auto picture = [&](const std::string& name, const std::vector<std::string>& more) {
+    auto arguments = plain;
+    arguments.insert(arguments.end(), {"-o", folder.file(name), "--heat-map", folder.file("heat-" + name)});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return document_of(arguments);
+  };
+  const json before = picture("plain.png", {});
+  const json after = picture("planned.png", {"--expect", "1G"});
+  const json named = picture("named.png", {"--plan", "mix"});
+  REQUIRE(after["plan"]["made"] == true);
+  REQUIRE(after["plan"]["chosen"].size() == 2);
+  REQUIRE(after["plan"]["decisions"][0]["query"] == "closest");
+  REQUIRE(after["plan"]["decisions"][1]["query"] == "any");
+  REQUIRE(after["plan"]["chosen"][1]["measured_saving"] > 0.02);
+  REQUIRE(named["plan"]["chosen"][0]["tree"] == "mix");
+  REQUIRE(named["plan"]["chosen"][1]["tree"] == "mix");
+  REQUIRE(after["rays"] == before["rays"]);
+  const std::string bytes = program::read_text(folder.file("plain.png"));
+  REQUIRE(program::read_text(folder.file("planned.png")) == bytes);
+  REQUIRE(program::read_text(folder.file("named.png")) == bytes);
+  REQUIRE(after["heat_map"]["mean_boxes"] < before["heat_map"]["mean_boxes"]);
 }
 
 TEST_CASE("plans that cannot be are refused before anything is loaded") {
@@ -69,6 +168,10 @@ TEST_CASE("plans that cannot be are refused before anything is loaded") {
   const auto thread = run({"trace", "no-such-file.glb", "--plan", "auto", "--flavour", "thread"});
   CHECK(thread.status == 2);
   CHECK_THAT(thread.err, Catch::Contains("thread"));
+  const auto preview = run({"render", "no-such-file.glb", "-o", "a.png", "--plan", "mix"});
+  CHECK(preview.status == 2);
+  CHECK_THAT(preview.err, Catch::Contains("--samples"));
+  CHECK(run({"build", "no-such-file.glb", "--plan", "best"}).status == 2);
   CHECK(run({"plan", "no-such-file.glb"}).status == 4);
   CHECK(run({"plan", "gen:cottage:8k", "--rays-in", "no-such.rays"}).status == 4);
   CHECK(run({"plan", "gen:cottage:8k", "--rays", "sideways"}).status == 2);

@@ -1,0 +1,280 @@
+// Writes the page of what trees for given rays save in time, and how well time is predicted, from the rows of
+// ray_aware_time and from nothing else; or checks that the page is what the rows give.
+//
+//   ray_aware_time_page ROWS.jsonl PAGE.md [--check]
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "page_file.h"
+
+namespace {
+
+using nlohmann::json;
+using page::number;
+
+double median(const json& row, const char* field) {
+  return row.at(field).at("median").get<double>();
+}
+
+double geomean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += std::log(value);
+  return values.empty() ? 1.0 : std::exp(sum / static_cast<double>(values.size()));
+}
+
+// One scene's rays of one kind, its trees by name.
+struct Case {
+  std::string scene, rays, query;
+  std::map<std::string, json> trees;
+};
+
+// "light" for "light 0".
+std::string kind_of(const json& row) {
+  const std::string rays = row.at("rays");
+  return rays.substr(0, rays.find(' '));
+}
+
+// Time of a ray in nanoseconds: what any ray of its kind takes, however little it meets (rays that run apart
+// take more), and so much for each box and each triangle that the tracer tests. By least squares of relative
+// errors.
+class TimeModel {
+ public:
+  explicit TimeModel(const std::vector<const json*>& rows) {
+    for (const json* const row : rows) {
+      const std::string kind = kind_of(*row);
+      if (std::find(kinds_.begin(), kinds_.end(), kind) == kinds_.end()) kinds_.push_back(kind);
+    }
+    std::sort(kinds_.begin(), kinds_.end());
+    weights_ = solved(normal_equations(rows));
+  }
+
+  [[nodiscard]] double operator()(const json& row) const {
+    const std::vector<double> terms = terms_of(row);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < terms.size(); ++i) sum += weights_[i] * terms[i];
+    return sum;
+  }
+
+  // "primary 70, a box 1.8, a triangle 0.5".
+  [[nodiscard]] std::string words() const {
+    std::string out;
+    for (std::size_t i = 0; i < kinds_.size(); ++i)
+      out += kinds_[i] + " " + number(weights_[i], "%.0f") + ", ";
+    return out + "a box " + number(weights_[kinds_.size()], "%.2f") + ", a triangle " +
+           number(weights_[kinds_.size() + 1], "%.2f");
+  }
+
+ private:
+  using Rows = std::vector<std::vector<double>>;
+
+  [[nodiscard]] std::vector<double> terms_of(const json& row) const {
+    std::vector<double> terms;
+    for (const std::string& kind : kinds_) terms.push_back(kind == kind_of(row) ? 1.0 : 0.0);
+    terms.push_back(row.at("traced_boxes_per_ray"));
+    terms.push_back(row.at("traced_triangles_per_ray"));
+    return terms;
+  }
+
+  [[nodiscard]] Rows normal_equations(const std::vector<const json*>& rows) const {
+    const std::size_t n = kinds_.size() + 2;
+    Rows m(n, std::vector<double>(n + 1, 0.0));
+    for (const json* const row : rows) {
+      std::vector<double> terms = terms_of(*row);
+      for (double& term : terms) term /= median(*row, "ns_per_ray");
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) m[i][j] += terms[i] * terms[j];
+        m[i][n] += terms[i];
+      }
+    }
+    return m;
+  }
+
+  // Gauss and Jordan, rows exchanged for the largest pivot; a term that no row tells apart weighs nothing.
+  static std::vector<double> solved(Rows m) {
+    const std::size_t n = m.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      std::size_t pivot = i;
+      for (std::size_t r = i + 1; r < n; ++r) {
+        if (std::fabs(m[r][i]) > std::fabs(m[pivot][i])) pivot = r;
+      }
+      std::swap(m[i], m[pivot]);
+      if (std::fabs(m[i][i]) < 1e-12) continue;
+      for (std::size_t r = 0; r < n; ++r) {
+        if (r == i) continue;
+        const double factor = m[r][i] / m[i][i];
+        for (std::size_t c = i; c <= n; ++c) m[r][c] -= factor * m[i][c];
+      }
+    }
+    std::vector<double> out(n, 0.0);
+    for (std::size_t i = 0; i < n; ++i) out[i] = std::fabs(m[i][i]) < 1e-12 ? 0.0 : m[i][n] / m[i][i];
+    return out;
+  }
+
+  std::vector<std::string> kinds_;
+  std::vector<double> weights_;
+};
+
+struct Quality {
+  double correlation = 0.0;
+  double error = 0.0;  // mean of |predicted / measured - 1|
+};
+
+Quality quality_of(const std::vector<double>& got, const std::vector<double>& wanted) {
+  const auto n = static_cast<double>(got.size());
+  double mean_got = 0.0, mean_wanted = 0.0;
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    mean_got += got[i] / n;
+    mean_wanted += wanted[i] / n;
+  }
+  double both = 0.0, own = 0.0, other = 0.0;
+  Quality out;
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    both += (got[i] - mean_got) * (wanted[i] - mean_wanted);
+    own += (got[i] - mean_got) * (got[i] - mean_got);
+    other += (wanted[i] - mean_wanted) * (wanted[i] - mean_wanted);
+    out.error += std::fabs(got[i] / wanted[i] - 1.0) / n;
+  }
+  out.correlation = own > 0.0 && other > 0.0 ? both / std::sqrt(own * other) : 0.0;
+  return out;
+}
+
+// Of the kept trees over others, in counts and in time.
+struct Ratios {
+  std::vector<double> counts, times;
+  void add(const json& own, const json& other, const char* time) {
+    counts.push_back(own.at("cost").get<double>() / other.at("cost").get<double>());
+    times.push_back(median(own, time));
+  }
+  [[nodiscard]] std::string means() const {
+    return std::string(" ") + number(geomean(counts), "%.3f") + " | " + number(geomean(times), "%.3f") + " |";
+  }
+  [[nodiscard]] std::string share() const {
+    const double saved = 1.0 - geomean(counts);
+    return saved > 0.0 ? number((1.0 - geomean(times)) / saved, "%.2f") : "none is saved";
+  }
+};
+
+class Page {
+ public:
+  explicit Page(const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      const json row = json::parse(line);
+      Case& found = cases_[{row.at("query"), row.at("scene"), row.at("rays")}];
+      found.scene = row.at("scene");
+      found.rays = row.at("rays");
+      found.query = row.at("query");
+      found.trees[row.at("tree").get<std::string>()] = row;
+      different_ += row.at("different_hits").get<std::uint64_t>();
+      device_ = row.at("device");
+      commit_ = row.at("commit");
+      triangles_ = std::max(triangles_, row.at("triangles").get<std::uint64_t>());
+      rows_ += 1;
+    }
+  }
+
+  [[nodiscard]] std::string text() const {
+    std::string out =
+        "# What trees for given rays save in time\n\nWritten by `ray_aware_time_page` from "
+        "`ray_aware_time.jsonl` "
+        "(" +
+        std::to_string(rows_) + " rows of `ray_aware_time`, commit " + commit_.substr(0, 12) + ", " +
+        device_ +
+        ", one thread).\n\nTime: process CPU time of rounds in which all trees trace the same rays once, in "
+        "an order "
+        "that turns; median (least–most)\nof the rounds' ratios. Counts: 1.0 a box and 1.2 a triangle in the "
+        "binary "
+        "tree. sah: the plan's baseline; balanced: what is\nbuilt without a plan. Scenes of up to " +
+        std::to_string(triangles_) + " triangles. Hits that\ndiffer: " + std::to_string(different_) + ".\n";
+    for (const char* const query : {"closest", "any"}) out += savings(query);
+    out +=
+        "\n## Time predicted\n\nNanoseconds a ray: what any ray of its kind takes, and so much a box and a "
+        "triangle "
+        "that the tracer tests, by least squares of\nrelative errors over all rows of a query. Other scenes: "
+        "each "
+        "scene by what was fitted to all others. Counts alone: one factor.\nCells: correlation, mean "
+        "error.\n\n| "
+        "query | rows | ns | fitted | other scenes | counts alone |\n|---|---|---|---|---|---|\n";
+    for (const char* const query : {"closest", "any"}) out += prediction(query);
+    return out;
+  }
+
+ private:
+  [[nodiscard]] static std::string spread(const json& row, const char* field) {
+    const json& s = row.at(field);
+    return number(s.at("median"), "%.3f") + " (" + number(s.at("min"), "%.2f") + "–" +
+           number(s.at("max"), "%.2f") + ")";
+  }
+
+  [[nodiscard]] std::string savings(const std::string& query) const {
+    std::string out =
+        "\n## " + std::string(query == "any" ? "Any hit" : "Closest hit") +
+        "\n\n| scene, rays | kept | counts of sah | time of sah | counts of balanced | time of balanced "
+        "|\n|---|---|---|---|---|---|\n";
+    Ratios of_sah, of_balanced;
+    for (const auto& [key, c] : cases_) {
+      if (c.query != query) continue;
+      const std::string kept = c.trees.at("sah").at("kept");
+      const json& own = c.trees.at(kept);
+      of_sah.add(own, c.trees.at("sah"), "time_of_sah");
+      of_balanced.add(own, c.trees.at("balanced"), "time_of_balanced");
+      out += "| " + c.scene + ", " + c.rays + " | " + kept + " | " + number(of_sah.counts.back(), "%.3f") +
+             " | " + spread(own, "time_of_sah") + " | " + number(of_balanced.counts.back(), "%.3f") + " | " +
+             spread(own, "time_of_balanced") + " |\n";
+    }
+    return out + "| geometric mean | |" + of_sah.means() + of_balanced.means() +
+           "\n\nShare of the counts' saving that is saved in time: " + of_sah.share() + " against sah, " +
+           of_balanced.share() + " against balanced.\n";
+  }
+
+  [[nodiscard]] std::string prediction(const std::string& query) const {
+    std::vector<const json*> all;
+    for (const auto& [key, c] : cases_) {
+      if (c.query != query) continue;
+      for (const auto& [name, row] : c.trees) all.push_back(&row);
+    }
+    const TimeModel model(all);
+    std::vector<double> fitted, elsewhere, wanted, costs;
+    for (const json* const row : all) {
+      std::vector<const json*> others;
+      for (const json* const other : all) {
+        if (other->at("scene") != row->at("scene")) others.push_back(other);
+      }
+      fitted.push_back(model(*row));
+      elsewhere.push_back(others.empty() ? 0.0 : TimeModel(others)(*row));
+      wanted.push_back(median(*row, "ns_per_ray"));
+      costs.push_back(row->at("cost").get<double>());
+    }
+    double factor = 0.0;
+    for (std::size_t i = 0; i < costs.size(); ++i)
+      factor += wanted[i] / costs[i] / static_cast<double>(costs.size());
+    for (double& cost : costs) cost *= factor;
+    std::string out = "| " + query + " | " + std::to_string(all.size()) + " | " + model.words() + " |";
+    for (const auto* const values : {&fitted, &elsewhere, &costs}) {
+      const Quality quality = quality_of(*values, wanted);
+      out += std::string(" ") + number(quality.correlation, "%.3f") + ", " +
+             number(100.0 * quality.error, "%.0f") + " % |";
+    }
+    return out + "\n";
+  }
+
+  std::map<std::array<std::string, 3>, Case> cases_;
+  std::string commit_, device_;
+  std::uint64_t different_ = 0;
+  std::uint64_t triangles_ = 0;
+  std::size_t rows_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return page::run(argc, argv, "ray_aware_time_page",
+                   [](const std::string& rows) { return Page(rows).text(); });
+}

@@ -1,0 +1,35 @@
+#include "planned_tracers.h"
+
+#include <algorithm>
+
+namespace gnomon::app {
+
+PlannedTracers::PlannedTracers(const cl::Context& context, const Scene& scene, const TimedBuild& plain,
+                               const PlanOutcome& plan)
+    : plain_(plain) {
+  const std::size_t kinds = plan.chosen.size();
+  closest_ = ready(context, scene, kinds == 0 ? nullptr : plan.tree(0));
+  // Without lights nothing asks: any tree will do.
+  any_ = ready(context, scene, kinds == 0 ? nullptr : plan.tree(kinds - 1));
+}
+
+PlannedTracers::Ready PlannedTracers::ready(const cl::Context& context, const Scene& scene,
+                                            const PlanTree* kept) const {
+  Ready out;
+  if (kept == nullptr) {
+    out.tracer = std::make_unique<Tracer>(context, plain_.tree);
+    return out;
+  }
+  out.own = std::make_unique<DeviceBvh>(upload_bvh(context, kept->tree.bvh, scene.triangles));
+  // The binary tree has no slots for an order to be of.
+  if (kept->tree.ranks.empty() || !has_slots(context.device(), TraceFlavour::kAuto)) {
+    out.tracer = std::make_unique<Tracer>(context, *out.own);
+    return out;
+  }
+  out.wide =
+      std::make_unique<DeviceWideBvh>(collapse_device(context, *out.own, {}, nullptr, kept->tree.ranks));
+  out.tracer = std::make_unique<Tracer>(context, *out.wide);
+  return out;
+}
+
+}  // namespace gnomon::app

@@ -106,9 +106,10 @@ static inline void put_by_distance(float8 entries, uint mask, uint count, __glob
   const int8 chosen = ((int8)((int)mask) & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
   uint sorted[8], i;
   vstore8(as_uint8(sort_eight(chosen ? entry_keys(entries) : (int8)INT_MAX)), 0, sorted);
-  for (i = 0u; i < count; ++i) {
-    keys_out[count - 1u - i] = sorted[i];
-    links_out[count - 1u - i] = links[sorted[i] & 7u];
+  for (i = 0u; i < 8u; ++i) {  // all eight, whatever the count: what is behind it is written over
+    const uint place = (count - 1u - i) & 7u;
+    keys_out[place] = sorted[i];
+    links_out[place] = links[sorted[i] & 7u];
   }
 #endif
 }
@@ -146,11 +147,10 @@ static inline void put_in_order(uint mask, __global const uint* links, uint* lin
   vstore8(as_uint8(__builtin_ia32_compresssi256_mask(as_int8(vload8(0, links)), (int8)0, (uchar)mask)), 0,
           links_out);
 #else
-  uint i = 0u;
-  while (mask != 0u) {
-    links_out[i] = links[lowest_bit(mask)];
-    mask &= mask - 1u;
-    i += 1u;
+  uint i, count = 0u;
+  for (i = 0u; i < 8u; ++i) {  // each lane's link goes to the next free place, and stays there if the lane is in mask
+    links_out[count] = links[i];
+    count += (mask >> i) & 1u;
   }
 #endif
 }

@@ -17,8 +17,9 @@ struct RaysToCome {
 };
 
 struct OutlookOptions {
-  // Of planning, a triangle: for the baseline, and for each kind of rays. Units as in PlanPrices; rounded up
-  // from measured times (bench/results), which are dearer than the counts of the work alone.
+  // Of planning, a triangle: for the baseline, and for each kind of rays. Units as in PlanPrices. Rounded up
+  // from one run of an earlier planner, which made five candidates: today's is cheaper, so that a plan may be
+  // left out where it would pay, and is never made where it would not.
   double baseline_price = 200.0;
   double kind_price = 3000.0;
   // What planning may take of the work to come. Where it finds nothing, a run is longer by that at most.

@@ -26,7 +26,7 @@ take_compare() {
 take_devices() {
   local scene
   for scene in gen:cottage:7k gen:city:20k; do
-    RUSTICL_ENABLE=llvmpipe gnomon compare "$scene" --devices "${GNOMON_DEVICES:-pocl,rusticl}" --rays primary,shadow,random \
+    RUSTICL_ENABLE=llvmpipe gnomon compare "$scene" --devices "${GNOMON_DEVICES:-pthread,llvmpipe}" --rays primary,shadow,random \
       --methods sah-fast,sah-balanced/portable --ray-count 4096 --judged-rays 1000 --rounds 5 --time 10m --afresh \
       -o "$build/rows/devices.html" --rows /dev/fd/3 3>&1 >/dev/null
   done

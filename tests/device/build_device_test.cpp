@@ -106,7 +106,7 @@ TEST_CASE("the tree does not depend on how the work is cut") {
 // Leaves of 255 triangles with 64 bins are more than a device that ends long loops can build.
 TEST_CASE("bins, leaf size, costs and median depth mean the same on the device", "[unlimited]") {
   const auto triangles = gnomon::test::soup(3000, 53);
-  for (const std::uint32_t bins : {2U, 16U, 64U}) {
+  for (const std::uint32_t bins : {2U, 8U, 16U, 64U}) {
     for (const std::uint32_t leaf : {1U, 8U, 255U}) {
       BuildOptions options = cut(1, 512, 256);
       options.bins = bins;

@@ -1,5 +1,6 @@
 // Wide trees whose slots have keys, on the device: the reference's bytes, and the answers of any other order.
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "gnomon/base/error.h"
 #include "support/flavours.h"
@@ -52,4 +53,7 @@ TEST_CASE("with keys the device's wide trees are the reference's too, and answer
   }
   REQUIRE_THROWS_WITH(collapse_device(context(), tree, {}, nullptr, std::span(keys).first(2)),
                       Catch::Contains("2 slot keys"));
+  keys[3] = std::nanf("");
+  REQUIRE_THROWS_WITH(collapse_device(context(), tree, {}, nullptr, keys),
+                      Catch::Contains("slot key 3 is NaN"));
 }

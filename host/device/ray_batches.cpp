@@ -14,10 +14,11 @@ constexpr std::size_t kBatchInPasses = 1U << 15U;
 // Turns of loops that one step may cost the up to 16 rays a device's vector unit traces side by side.
 constexpr std::uint32_t kTurnsPerStep = 64;
 
-// Rays of a CPU's work-item that take steps by turns (wide_walk.h): from eight on their walkers' number changes nothing, and
-// eight leave room in the first-level cache.
+// Rays of a CPU's work-item that take steps by turns (wide_walk.h): from eight on their walkers' number
+// changes nothing, and eight leave room in the first-level cache.
 constexpr std::uint32_t kRaysAtOnce = 8;
-// So many rays for each of a work-group's, that the last ones of an item, which fewer and fewer keep company, are few.
+// So many rays for each of a work-group's, that the last ones of an item, which fewer and fewer keep company,
+// are few.
 constexpr std::uint32_t kRunsPerItem = 4;
 
 // The stack a traversal needs: every level leaves at most one node waiting. A few sizes only, so that trees
@@ -42,8 +43,8 @@ std::string TracePlan::program_options() const {
   if (wide) {
     return "-DGN_WIDE_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
            " -DGN_RAYS_PER_ITEM=" + std::to_string(rays_per_item) +
-           " -DGN_RAYS_AT_ONCE=" + std::to_string(rays_at_once) +
-           " -DGN_PORTABLE=" + (portable ? "1" : "0") + (fast ? " -DGN_FAST=1" : "");
+           " -DGN_RAYS_AT_ONCE=" + std::to_string(rays_at_once) + " -DGN_PORTABLE=" + (portable ? "1" : "0") +
+           (fast ? " -DGN_FAST=1" : "");
   }
   return "-DGN_STACK_SIZE=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
          " -DGN_STEP_LIMIT=" + std::to_string(step_limit);

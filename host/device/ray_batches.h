@@ -16,8 +16,8 @@ struct TracePlan {
   std::uint32_t work_group_size = 0;
   std::uint32_t rays_per_item = 1;
   std::uint32_t rays_at_once = 1;  // of an item's, taking steps by turns
-  std::uint32_t stack_size = 0;  // nodes waiting, per ray
-  std::uint32_t step_limit = 0;  // TraceOptions::step_limit, with the device's say; 0: one launch
+  std::uint32_t stack_size = 0;    // nodes waiting, per ray
+  std::uint32_t step_limit = 0;    // TraceOptions::step_limit, with the device's say; 0: one launch
   std::uint32_t most_passes = 0;
   std::uint32_t state_bytes = 0;  // of a ray between passes
   bool counters = false;

@@ -70,7 +70,7 @@ class Page {
 
   [[nodiscard]] std::string text() const {
     std::string out = "# Trees for given rays\n\nWritten by `ray_aware_page` from `ray_aware.jsonl` (" +
-                      std::to_string(rows_) + " rows of `ray_aware_bench`, commit " + commit_.substr(0, 12) +
+                      std::to_string(rows_) + " rows of `ray_aware_bench`, commit " + commit_ +
                       ").\n\nCost of a ray: 1.0 a box test and 1.2 a triangle test, two boxes a node "
                       "visited, the root's not counted. "
                       "Trees are fitted to\nrays of one seed, chosen by those of another, measured on a "

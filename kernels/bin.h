@@ -204,6 +204,7 @@ static inline GnNodeView view_of(const GnTask* task, GnBinning binning) {
   node.probability = task->probability;
   node.count = task->end - task->begin;
   node.depth = task->depth;
+  node.how = task->how;
   node.usable = (binning.scale.x > 0.0f ? 1u : 0u) | (binning.scale.y > 0.0f ? 2u : 0u) |
                 (binning.scale.z > 0.0f ? 4u : 0u);
   return node;
@@ -240,6 +241,8 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
     sweep_three_axes(measure, GN_SEEN_ONE_STEP, w, bins, counts, bin_count, node->count, best_of_axis);
   } else if (steps && how == GN_SEEN_FEW_STEPS) {
     sweep_three_axes(measure, GN_SEEN_FEW_STEPS, w, bins, counts, bin_count, node->count, best_of_axis);
+  } else if (steps && how == GN_SEEN_WHOLE) {
+    sweep_three_axes(measure, GN_SEEN_WHOLE, w, bins, counts, bin_count, node->count, best_of_axis);
   } else {
     turn_bins(bins);
     sweep_axes(heuristic, how, node, bins, counts, bin_count, best_of_axis);

@@ -67,11 +67,11 @@ __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __gl
   const uint count = task.end - task.begin;
   const GnHeuristic heuristic = *heuristic_in;
   const GnNodeView node = view_of(&task, binning_of(&task, triangles));
+  const int how = gn_measure_how_below(&heuristic.measure, (int)task.how, task.lo, task.hi);
   GnSplit split;
   merge_chunks(chunk_bins, chunk_counts, from, to, bins, counts);
   turn_bins(bins);
-  split = choose_split(&heuristic, gn_measure_how(&heuristic.measure, task.lo, task.hi), &node, bins, counts,
-                       GN_BINS, best_of_axis);
+  split = choose_split(&heuristic, how, &node, bins, counts, GN_BINS, best_of_axis);
   if (GN_LOCAL_ID == 0u) {
     const int halve = split.axis == GN_NONE || task.depth >= heuristic.rules.median_depth;
     uint chunk, left_at, right_at;
@@ -80,6 +80,7 @@ __kernel void split_tasks(__global GnTask* tasks, __global GnChunk* chunks, __gl
     task.left_count = halve ? count / 2u : split.left_count;
     task.left_measure = split.left_measure;
     task.right_measure = split.right_measure;
+    task.how = (uint)how;
     if (!halve) {
       __local const GnBin* axis_bins = bins + split.axis * GN_BINS;
       store_bounds(&children[group].left_box, box_of_bins(axis_bins, 0u, split.plane + 1u));

@@ -74,7 +74,8 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
     __global float8* to = task.buffer == 0u ? primitives1 : primitives0;
     const GnBinning binning = binning_of(&task, triangles);
     const GnNodeView node = view_of(&task, binning);
-    const int how = count > 1u ? gn_measure_how(&heuristic.measure, task.lo, task.hi) : 0;  // single triangles are leaves
+    // Single triangles are leaves.
+    const int how = count > 1u ? gn_measure_how_below(&heuristic.measure, (int)task.how, task.lo, task.hi) : 0;
     GnSplit split = gn_no_split();
     GN_GROUP_BARRIER();
 
@@ -138,6 +139,7 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
         left_task->depth = task.depth + 1u;
         left_task->buffer = task.buffer ^ 1u;
         left_task->probability = task.left_measure;
+        left_task->how = (uint)how;
         set_task_bounds(right_task, right, sides.right);
         right_task->begin = middle;
         right_task->end = task.end;
@@ -145,6 +147,7 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
         right_task->depth = task.depth + 1u;
         right_task->buffer = task.buffer ^ 1u;
         right_task->probability = task.right_measure;
+        right_task->how = (uint)how;
         inner_rank[middle] = 1u;
         top = height + 1u;
       }

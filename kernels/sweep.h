@@ -45,21 +45,21 @@ static inline int4 counts_at(__local const uint* counts, uint bin) {
 #define GN_BIN_AT(bins, axis, bin) (*(__local const float8*)((bins) + (axis)*GN_BINS + (bin)))
 
 // How three boxes are weighed: `how` is a literal, as in gn_sweep_boxes. w: as gn_linear_part gives it. d: their extents.
-static inline float4 measures_of(const GnMeasure* measure, const int how, const float* w, float8 x, float8 y, float8 z,
-                                 GnExtents d) {
+GN_LANES_INLINE float4 measures_of(const GnMeasure* measure, const int how, const float* w, float8 x, float8 y, float8 z,
+                                   GnExtents d) {
   const float4 linear = gn_weighed_faces(w, d.x, d.y, d.z);
   if (how == GN_SEEN_NOTHING) return linear;
   const GnBoxes box = boxes_of(x, y, z);
-  return measure->area_scale * gn_step_measures(measure, how, &box) + linear;
+  return measure->area_scale * gn_lane_measures(measure, how, &box) + linear;
 }
 
-// The cheapest split of every axis, to best_of_axis; axis == GN_NONE where there is none: on an axis without extent all
-// are in the first bin, and no plane divides them. how: GN_SEEN_NOTHING where the face weights w measure all, else
-// GN_SEEN_ONE_STEP or GN_SEEN_FEW_STEPS. w: as gn_linear_part gives it. bin_count: at most GN_BINS. Steps are not taken for
-// bins that are empty on all axes, as small nodes' are.
-static inline void sweep_three_axes(const GnMeasure* measure, const int how, const float* w, __local const GnBin* bins,
-                                    __local const uint* counts, uint bin_count, uint count,
-                                    __local GnSplit* best_of_axis) {
+// The cheapest split of every axis, to best_of_axis; axis == GN_NONE where there is none: on an axis without extent all are
+// in the first bin, and no plane divides them. how: GN_SEEN_NOTHING where the face weights w measure all, else
+// GN_SEEN_ONE_STEP, GN_SEEN_FEW_STEPS or GN_SEEN_WHOLE. w: as gn_linear_part gives it. bin_count: at most GN_BINS. Steps
+// are not taken for bins that are empty on all axes, as small nodes' are.
+GN_LANES_INLINE void sweep_three_axes(const GnMeasure* measure, const int how, const float* w, __local const GnBin* bins,
+                                      __local const uint* counts, uint bin_count, uint count,
+                                      __local GnSplit* best_of_axis) {
   float4 right_cost[GN_BINS], right_measure[GN_BINS], right_tie[GN_BINS];
   float4 measured = (float4)(0.0f), costs_right = (float4)(0.0f), ties_right = (float4)(0.0f);
   const int breaks_ties = measure->breaks_ties != 0u;

@@ -41,6 +41,7 @@ GnTask root_task(std::span<const GnBounds> bounds, std::uint32_t count) {
   GnTask task{};
   task.end = count;
   task.probability = GN_FLOAT_MAX;
+  task.how = GN_SEEN_PRECISE;
   set_bounds(task, box, centroids);
   return task;
 }
@@ -94,6 +95,7 @@ std::vector<GnTask> next_tasks(const Level& level, std::span<const GnChildren> c
       child.slot = 2 * middle + side;
       child.depth = task.depth + 1;
       child.buffer = task.buffer ^ 1U;
+      child.how = task.how;
       child.probability = side == 0 ? task.left_measure : task.right_measure;
       set_bounds(child, halved ? boxes[side] : from_bins, centroids[side]);
       (child.end - child.begin > subtree_size ? next : large.roots).push_back(child);

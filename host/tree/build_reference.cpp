@@ -101,6 +101,7 @@ GnNodeView view_of(const BuildState& builder, const GnTask& task) {
   node.probability = task.probability;
   node.count = task.end - task.begin;
   node.depth = task.depth;
+  node.how = task.how;
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     if (bin_scale_on_axis(builder, task, axis) > 0.0F) node.usable |= 1U << axis;
   }
@@ -146,8 +147,10 @@ void count_split(SplitTally& tally, const GnSplit& split, const GnPolicyEffort& 
   if (effort.fallback_axis != GN_NONE) tally.fallback_on[effort.fallback_axis] += 1;
 }
 
-void push_child(BuildState& builder, const GnTask& task, float probability) {
+// how: its parent's parts were measured.
+void push_child(BuildState& builder, const GnTask& task, int how, float probability) {
   GnTask child = task;
+  child.how = static_cast<std::uint32_t>(how);
   child.probability = probability;
   measure_range(builder.primitives, child);
   builder.open.push_back(child);
@@ -164,7 +167,8 @@ GnTask task_of(std::uint32_t begin, std::uint32_t end, std::uint32_t slot, std::
 
 void build_node(BuildState& builder, const GnTask& task) {
   const GnNodeView view = view_of(builder, task);
-  const int how = gn_measure_how(&builder.heuristic.measure, task.lo, task.hi);
+  const int how =
+      gn_measure_how_below(&builder.heuristic.measure, static_cast<int>(task.how), task.lo, task.hi);
   GnPolicyEffort effort{0, GN_NONE};
   const GnSplit split = choose_split(builder, view, how, task, effort);
   builder.tally.axes_tried += effort.axes;
@@ -179,8 +183,8 @@ void build_node(BuildState& builder, const GnTask& task) {
     const std::uint32_t middle = partition(builder, task, split);
     node.first = 2 * middle;
     builder.is_split[middle] = true;
-    push_child(builder, task_of(task.begin, middle, 2 * middle, task.depth + 1), split.left_measure);
-    push_child(builder, task_of(middle, task.end, 2 * middle + 1, task.depth + 1), split.right_measure);
+    push_child(builder, task_of(task.begin, middle, 2 * middle, task.depth + 1), how, split.left_measure);
+    push_child(builder, task_of(middle, task.end, 2 * middle + 1, task.depth + 1), how, split.right_measure);
   }
   builder.sparse[task.slot] = node;
 }
@@ -235,7 +239,7 @@ Bvh build_over_primitives(std::vector<GnPrimitive> primitives, std::span<const T
   if (tally != nullptr) builder.tally = *tally;
   builder.sparse.resize(2 * static_cast<std::size_t>(count));
   builder.is_split.resize(count);
-  push_child(builder, task_of(0, count, 0, 0), GN_FLOAT_MAX);
+  push_child(builder, task_of(0, count, 0, 0), GN_SEEN_PRECISE, GN_FLOAT_MAX);
   builder.heuristic = heuristic_of(options, builder.open.back().lo, builder.open.back().hi);
   while (!builder.open.empty()) {
     const GnTask task = builder.open.back();

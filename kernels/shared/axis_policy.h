@@ -12,10 +12,11 @@
 typedef struct GnNodeView {
   gn_f32 lo[3];
   gn_f32 hi[3];
-  gn_f32 probability;  // as its parent's split rated it; GN_FLOAT_MAX at the root. Read by the published rule only
+  gn_f32 probability;  // as its parent's split rated it; GN_FLOAT_MAX at the root
   gn_u32 count;
   gn_u32 depth;
   gn_u32 usable;       // bit k: axis k can be divided
+  gn_u32 how;          // its parent's parts, it among them, were measured
 } GnNodeView;
 
 // How a policy came to its split, for whoever measures it.
@@ -135,9 +136,14 @@ GN_INLINE int gn_becomes_leaf(const GnHeuristic* h, int how, const GnNodeView* n
            2.0f * gn_surface_measure(node->lo, node->hi) < rules->max_leaf_area;
   }
   if (node->count > rules->max_leaf_size) return 0;
-  if (node->count == 1u) return 1;
-  return gn_leaf_is_better(split, gn_box_measure(&h->measure, how, node->lo, node->hi), node->count,
-                           rules->cost_traversal, rules->cost_triangle);
+  if (node->count == 1u || split->axis == GN_NONE) return 1;
+  {
+    // Where all axes are tried, splits are rated by the measure. A parent that was halved rates nothing, but its children
+    // find no split.
+    const int rated = rules->axes == GN_AXES_ALL && node->how == (gn_u32)how && node->probability < GN_FLOAT_MAX;
+    const gn_f32 measure = rated ? node->probability : gn_box_measure(&h->measure, how, node->lo, node->hi);
+    return gn_leaf_is_better(split, measure, node->count, rules->cost_traversal, rules->cost_triangle);
+  }
 }
 
 #endif

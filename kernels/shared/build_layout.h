@@ -123,7 +123,7 @@ typedef struct GnTask {
   gn_f32 probability;    // as the split that made it rated it; GN_FLOAT_MAX at the root
   gn_f32 left_measure;   // its children's
   gn_f32 right_measure;
-  gn_u32 pad;
+  gn_u32 how;  // its parent's parts were measured (GN_SEEN_*, seen_measure.h); GN_SEEN_PRECISE at the root
 } GnTask;
 GN_SIZE_IS(GnTask, 96);
 

@@ -119,6 +119,9 @@ GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int how, GN_BINS_SPACE
   if (how == GN_SEEN_FEW_STEPS) {
     return gn_sweep_boxes(measure, GN_SEEN_FEW_STEPS, w, bins, counts, plane_count, bin_count, axis, count);
   }
+  if (how == GN_SEEN_WHOLE) {
+    return gn_sweep_boxes(measure, GN_SEEN_WHOLE, w, bins, counts, plane_count, bin_count, axis, count);
+  }
   return gn_sweep_boxes(measure, GN_SEEN_PRECISE, w, bins, counts, plane_count, bin_count, axis, count);
 }
 

@@ -68,6 +68,25 @@ GN_INLINE gn_f32 gn_root(gn_f32 x) { return gn_first_lane(gn_roots(GN_ALL(x))); 
 GN_INLINE gn_f32 gn_power_near_reciprocal(gn_f32 x) { return gn_first_lane(gn_powers_near_reciprocal(GN_ALL(x))); }
 GN_INLINE gn_f32 gn_angle_of(gn_f32 y, gn_f32 x) { return gn_first_lane(gn_angles_of(GN_ALL(y), GN_ALL(x))); }
 
+// Roots and angles of four numbers, as above.
+GN_INLINE void gn_four_roots(const gn_f32* x, gn_f32* root) {
+#if GN_HAS_LANES
+  vstore4(gn_roots(vload4(0, x)), 0, root);
+#else
+  gn_u32 i;
+  for (i = 0u; i < 4u; ++i) root[i] = gn_root(x[i]);
+#endif
+}
+
+GN_INLINE void gn_four_angles(const gn_f32* y, const gn_f32* x, gn_f32* angle) {
+#if GN_HAS_LANES
+  vstore4(gn_angles_of(vload4(0, y), vload4(0, x)), 0, angle);
+#else
+  gn_u32 i;
+  for (i = 0u; i < 4u; ++i) angle[i] = gn_angle_of(y[i], x[i]);
+#endif
+}
+
 GN_INLINE gn_f32 gn_dot(const gn_f32* a, const gn_f32* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 GN_INLINE gn_lanes gn_lanes_dot(const gn_lanes* a, const gn_f32* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }

@@ -9,6 +9,8 @@
 
 #if defined(__OPENCL_VERSION__) && defined(GN_WGS) && GN_WGS == 1
 #define GN_HAS_LANES 1
+// Calls would pass lanes through memory.
+#define GN_LANES_INLINE __attribute__((always_inline)) static inline
 typedef float4 gn_lanes;
 typedef uint4 gn_lane_bits;
 typedef int4 gn_lane_mask;
@@ -19,6 +21,7 @@ GN_INLINE gn_lanes gn_lanes_of_bits(gn_lane_bits x) { return as_float4(x); }
 GN_INLINE gn_f32 gn_first_lane(gn_lanes x) { return x.x; }
 #else
 #define GN_HAS_LANES 0
+#define GN_LANES_INLINE GN_INLINE
 typedef gn_f32 gn_lanes;
 typedef gn_u32 gn_lane_bits;
 typedef int gn_lane_mask;

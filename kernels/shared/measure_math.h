@@ -34,6 +34,14 @@ GN_INLINE int gn_measure_how(const GnMeasure* measure, const gn_f32* lo, const g
   return gn_seen_how(measure, lo, hi);
 }
 
+// The same of a node whose parent's parts were measured `before` (GN_SEEN_PRECISE where there is none). What
+// one step serves, or no ray meets, is not looked at again: its parts are no larger, and no less inside the
+// window.
+GN_INLINE int gn_measure_how_below(const GnMeasure* measure, int before, const gn_f32* lo, const gn_f32* hi) {
+  if (before == GN_SEEN_ONE_STEP || before == GN_SEEN_NOTHING) return before;
+  return gn_measure_how(measure, lo, hi);
+}
+
 // Whether the measure takes steps (step_measure.h) where `how` says so.
 GN_INLINE int gn_has_steps(const GnMeasure* measure) {
   const gn_u32 kind = gn_kind_of(measure);

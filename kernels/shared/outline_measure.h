@@ -55,11 +55,12 @@ GN_INLINE void gn_outline_corner(const GnMeasure* m, const GnOutline* outline, g
   }
 }
 
-// Area in yaw and pitch between the side and pitch 0, cut to the window. The upright sides of the window are planes
-// through the up axis: what lies beyond adds nothing.
-GN_INLINE gn_f32 gn_cut_side_yaw_pitch(const GnMeasure* m, const gn_f32* a, const gn_f32* b) {
+// Area in yaw and pitch between the side and pitch 0, cut to the window. The upright sides of the window are planes through
+// the up axis: what lies beyond adds nothing. of_a, of_b: its ends' sights.
+GN_INLINE gn_f32 gn_cut_side_yaw_pitch(const GnMeasure* m, const gn_f32* a, const GnSight* of_a, const gn_f32* b,
+                                       const GnSight* of_b) {
   gn_f32 from = 0.0f, to = 1.0f, p[3], q[3];
-  GnSight at_p, at_q;
+  GnSight at_p = *of_a, at_q = *of_b;
   gn_u32 i;
   for (i = 0u; i < 2u; ++i) {
     const gn_f32 sign = i == 0u ? 1.0f : -1.0f;
@@ -77,8 +78,8 @@ GN_INLINE gn_f32 gn_cut_side_yaw_pitch(const GnMeasure* m, const gn_f32* a, cons
     p[i] = a[i] + from * (b[i] - a[i]);
     q[i] = to < 1.0f ? a[i] + to * (b[i] - a[i]) : b[i];
   }
-  at_p = gn_sight_of(p);
-  at_q = gn_sight_of(q);
+  if (from > 0.0f) at_p = gn_sight_of(p);
+  if (to < 1.0f) at_q = gn_sight_of(q);
   return gn_side_yaw_pitch(m->half_pitch, p, &at_p, q, &at_q);
 }
 
@@ -87,26 +88,30 @@ GN_INLINE gn_f32 gn_outline_measure(const GnMeasure* m, const GnOutline* outline
   const gn_f32 scale = gn_kind_of(m) == GN_MEASURE_WINDOW ? unit : 1.0f;
   const gn_f32 half_width = m->culled ? m->half_width * scale : GN_FLOAT_MAX;
   const gn_f32 half_height = m->culled ? m->half_height * scale : GN_FLOAT_MAX;
-  gn_f32 sum = 0.0f, level = 0.0f;
-  gn_u32 edge;
-  {
-    gn_f32 corner[3];
-    gn_outline_corner(m, outline, 0u, 2u, 4u, corner);
-    level = gn_within(corner[1], -half_height, half_height);
+  const int by_angles = gn_kind_of(m) == GN_MEASURE_YAW_PITCH;
+  gn_f32 corners[3 * 8], sum = 0.0f, level = 0.0f;
+  GnSight sights[8];
+  gn_u32 i, edge;
+  for (i = 0u; i < 8u; ++i) gn_outline_corner(m, outline, i & 1u, 2u + (i >> 1u & 1u), 4u + (i >> 2u), corners + 3u * i);
+  if (by_angles) {
+    gn_four_sights(corners, sights);
+    gn_four_sights(corners + 12, sights + 4);
+  } else {
+    level = gn_within(corners[1], -half_height, half_height);
   }
+  for (i = 0u; i < 8u; ++i) corners[3u * i + 1u] -= level;
   for (edge = 0u; edge < 12u; ++edge) {
     const gn_u32 k = edge >> 2u, u = k == 2u ? 0u : k + 1u, v = u == 2u ? 0u : u + 1u;
     const gn_u32 at_u = 2u * u + (edge & 1u), at_v = 2u * v + (edge >> 1u & 1u);
     const gn_u32 by_u = outline->leaves >> at_u & 1u, by_v = outline->leaves >> at_v & 1u;
-    gn_f32 a[3], b[3], part;
+    const gn_u32 lower = (edge & 1u) << u | (edge >> 1u & 1u) << v, upper = lower | 1u << k;
+    gn_f32* a = corners + 3u * lower;
+    gn_f32* b = corners + 3u * upper;
+    gn_f32 part;
     if (by_u == by_v) continue;
-    gn_outline_corner(m, outline, 2u * k, at_u, at_v, a);
-    gn_outline_corner(m, outline, 2u * k + 1u, at_u, at_v, b);
-    if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH) {
-      part = gn_cut_side_yaw_pitch(m, a, b);
+    if (by_angles) {
+      part = gn_cut_side_yaw_pitch(m, a, &sights[lower], b, &sights[upper]);
     } else {
-      a[1] -= level;
-      b[1] -= level;
       part = gn_side_area(a, b, half_width, -half_height - level, half_height - level);
     }
     // Around a face, seen from outside, its edges along an axis go up on one side and down on the other.

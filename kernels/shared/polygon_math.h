@@ -9,30 +9,36 @@
 // A face has four corners, and each of at most five cuts adds one.
 #define GN_MAX_CORNERS 10
 
-// Keeps what lies where x * px + y * py + z * pz + offset >= 0 (Sutherland & Hodgman 1974); returns the corners left.
-// from and to are different arrays.
-GN_INLINE gn_u32 gn_cut_polygon(const gn_f32* from, gn_u32 count, const gn_f32* plane, gn_f32 offset, gn_f32* to) {
-  gn_u32 i, kept = 0u;
+// Keeps what lies where x * px + y * py + z * pz + offset >= 0 (Sutherland & Hodgman 1974); returns the corners left. Most
+// polygons are all on one side. scratch: another array.
+GN_INLINE gn_u32 gn_cut_polygon(gn_f32* polygon, gn_u32 count, const gn_f32* plane, gn_f32 offset, gn_f32* scratch) {
+  gn_f32 at[GN_MAX_CORNERS];
+  gn_u32 i, inside = 0u, kept = 0u;
   for (i = 0u; i < count; ++i) {
-    const gn_f32* a = from + 3u * i;
-    const gn_f32* b = from + 3u * (i + 1u == count ? 0u : i + 1u);
-    const gn_f32 at_a = gn_dot(a, plane) + offset;
-    const gn_f32 at_b = gn_dot(b, plane) + offset;
-    if (at_a >= 0.0f && kept < GN_MAX_CORNERS) {
-      to[3u * kept] = a[0];
-      to[3u * kept + 1u] = a[1];
-      to[3u * kept + 2u] = a[2];
+    at[i] = gn_dot(polygon + 3u * i, plane) + offset;
+    inside += at[i] >= 0.0f ? 1u : 0u;
+  }
+  if (inside == count || inside == 0u) return inside;
+  for (i = 0u; i < count; ++i) {
+    const gn_u32 next = i + 1u == count ? 0u : i + 1u;
+    const gn_f32* a = polygon + 3u * i;
+    const gn_f32* b = polygon + 3u * next;
+    if (at[i] >= 0.0f && kept < GN_MAX_CORNERS) {
+      scratch[3u * kept] = a[0];
+      scratch[3u * kept + 1u] = a[1];
+      scratch[3u * kept + 2u] = a[2];
       kept += 1u;
     }
-    if ((at_a >= 0.0f) != (at_b >= 0.0f) && kept < GN_MAX_CORNERS) {
-      const gn_f32 span = gn_abs(at_a) + gn_abs(at_b);
-      const gn_f32 t = span < 1.17549435e-38f ? 0.5f : gn_abs(at_a) * gn_reciprocal(span);
-      to[3u * kept] = a[0] + t * (b[0] - a[0]);
-      to[3u * kept + 1u] = a[1] + t * (b[1] - a[1]);
-      to[3u * kept + 2u] = a[2] + t * (b[2] - a[2]);
+    if ((at[i] >= 0.0f) != (at[next] >= 0.0f) && kept < GN_MAX_CORNERS) {
+      const gn_f32 span = gn_abs(at[i]) + gn_abs(at[next]);
+      const gn_f32 t = span < 1.17549435e-38f ? 0.5f : gn_abs(at[i]) * gn_reciprocal(span);
+      scratch[3u * kept] = a[0] + t * (b[0] - a[0]);
+      scratch[3u * kept + 1u] = a[1] + t * (b[1] - a[1]);
+      scratch[3u * kept + 2u] = a[2] + t * (b[2] - a[2]);
       kept += 1u;
     }
   }
+  for (i = 0u; i < 3u * kept; ++i) polygon[i] = scratch[i];
   return kept;
 }
 

@@ -74,7 +74,7 @@ void require_host_bits(const char* options, std::uint32_t box_count) {
   const auto got_how = context().download_values<std::uint32_t>(how, items);
   const auto got_chosen = context().download_values<float>(chosen, items);
   const auto got_precise = context().download_values<float>(precise, items);
-  std::vector<std::size_t> seen(4);
+  std::vector<std::size_t> seen(5);
   std::size_t positive = 0;
   for (std::size_t i = 0; i < items; ++i) {
     const GnMeasure& measure = measures[i / box_count];

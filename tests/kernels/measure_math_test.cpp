@@ -249,6 +249,51 @@ TEST_CASE("unculled measures are the reference's") {
   }
 }
 
+TEST_CASE("large boxes around a lamp are measured in lanes as the reference measures them") {
+  const InfluenceArea lamp = InfluenceArea::omni({0.5, -0.25, 0.125}, 50);
+  const GnMeasure m = gnomon::measure_of(lamp, RayMeasure::kSolidAngle, false);
+  Random random(109);
+  int whole = 0;
+  int around = 0;
+  int thin = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Box box = random_box(random, 0.5F, 20.0F);
+    if (gn_measure_how(&m, box.lo, box.hi) != GN_SEEN_WHOLE) continue;
+    CAPTURE(i, box.lo[0], box.lo[1], box.lo[2], box.hi[0], box.hi[1], box.hi[2]);
+    const double exact = gnomon::projected_measure(lamp, box.exact(), RayMeasure::kSolidAngle);
+    const double got = gn_box_measure(&m, GN_SEEN_WHOLE, box.lo, box.hi);
+    REQUIRE(got == Approx(exact).epsilon(2e-5).margin(2e-6));
+    REQUIRE(gn_box_measure(&m, GN_SEEN_PRECISE, box.lo, box.hi) == Approx(exact).epsilon(2e-5).margin(2e-6));
+    whole += 1;
+    around += got > 12.5 ? 1 : 0;
+    // Parts, thin and flat ones too, are measured as it is.
+    Box part = box;
+    const auto axis = static_cast<std::size_t>(random.below(3));
+    part.lo[axis] = part.hi[axis] - random.between(0.0F, 0.01F) * (box.hi[axis] - box.lo[axis]);
+    if (i % 4 == 0) part.lo[axis] = part.hi[axis];
+    const double rest = gnomon::projected_measure(lamp, part.exact(), RayMeasure::kSolidAngle);
+    REQUIRE(gn_box_measure(&m, GN_SEEN_WHOLE, part.lo, part.hi) == Approx(rest).epsilon(1e-4).margin(2e-6));
+    thin += rest > 0.01 ? 1 : 0;
+  }
+  REQUIRE(whole > 500);
+  REQUIRE(around > 20);
+  REQUIRE(thin > 300);
+  // On a face, rays of one half space meet the box; it counts as inside, which is more than they are, never
+  // less.
+  const Box on_face{{0.5F, -1, -1}, {2, 1, 1}};
+  REQUIRE(gn_box_measure(&m, GN_SEEN_WHOLE, on_face.lo, on_face.hi) >= 6.2F);
+}
+
+TEST_CASE("what one step serves, or no ray meets, is not looked at again further down") {
+  const GnMeasure m =
+      gnomon::measure_of(InfluenceArea::omni({0.5, -0.25, 0.125}, 50), RayMeasure::kSolidAngle, false);
+  const Box near{{0, 0, 0}, {1, 1, 1}};
+  for (const int before : {GN_SEEN_ONE_STEP, GN_SEEN_NOTHING})
+    REQUIRE(gn_measure_how_below(&m, before, near.lo, near.hi) == before);
+  for (const int before : {GN_SEEN_PRECISE, GN_SEEN_FEW_STEPS, GN_SEEN_WHOLE})
+    REQUIRE(gn_measure_how_below(&m, before, near.lo, near.hi) == GN_SEEN_WHOLE);
+}
+
 TEST_CASE("measures scale by powers of two as areas do, bit for bit") {
   Random random(105);
   for (const Case& c : cases()) {

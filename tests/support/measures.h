@@ -41,6 +41,7 @@ inline std::vector<std::pair<std::string, GnMeasure>> every_measure() {
   out.emplace_back("window", window);
   GnMeasure far_point = framed(GN_MEASURE_SOLID_ANGLE, {-60, 5, -80}, 0, 0);
   out.emplace_back("far point", far_point);
+  out.emplace_back("lamp", framed(GN_MEASURE_SOLID_ANGLE, {5, 4, 6}, 0, 0));
   for (const std::uint32_t kind : {GN_MEASURE_SOLID_ANGLE, GN_MEASURE_NEAR_PLANE, GN_MEASURE_YAW_PITCH}) {
     GnMeasure near_point = framed(kind, {2, 4, 1}, 0.5F, 0.4F);  // inside the scene
     near_point.culled = 1;

@@ -57,12 +57,12 @@ typedef struct GnPacket {
 
 // Error bounds of packet_leaf.h count on these.
 #define GN_SHEAR_LIMIT 1.25f
-#define GN_PENCIL_WIDTH 0.125f   // half the range of shears
+#define GN_PENCIL_WIDTH 0.125f
 #define GN_PACKET_FAR 1e18f  // of origins and the apex: products of edges and distances do not overflow
 #define GN_PACKET_UNDERFLOW 1e-30f
 
-// Parallel rays further apart than this share of the scene would meet different parts of it.
-#define GN_BUNDLE_WIDTH 0.0625f
+// Parallel rays further from their middle than this share of the scene would meet different parts of it (packets.md).
+#define GN_BUNDLE_WIDTH 0.25f
 
 // The scene's largest extent; not above 0 where it is empty.
 static inline float size_of_root(__global const GnWideNode* root) {
@@ -242,9 +242,9 @@ static inline void find_limit_of_all(GnPacket* p) {
   p->limit_of_all = largest_of16(most);
 }
 
-// A glance at four rays: whether taking all is worth the while.
+// Whether no direction component has both signs, and a glance at four rays says that taking all is worth the while.
 static inline int may_be_packet(__global const float8* rays, uint first, uint groups) {
-  const uint step = (16u * groups - 1u) / 3u;
+  const uint count = 16u * groups, step = (count - 1u) / 3u;
   float3 low = rays[first].s456, high = low;
   uint i;
   for (i = 1u; i < 4u; ++i) {
@@ -255,7 +255,13 @@ static inline int may_be_packet(__global const float8* rays, uint first, uint gr
   {
     const float3 wide = high - low, size = fabs(high) > fabs(low) ? fabs(high) : fabs(low);
     const float most = gn_max(gn_max(size.x, size.y), size.z), widest = gn_max(gn_max(wide.x, wide.y), wide.z);
-    return widest <= 0.5f * most && all((low >= 0.0f) | (high <= 0.0f));
+    if (!(widest <= 0.5f * most && all((low >= 0.0f) | (high <= 0.0f)))) return 0;
+  }
+  {
+    const uint4 bits = as_uint4(rays[first].hi);
+    uint4 differ = (uint4)(0u);
+    for (i = 1u; i < count; ++i) differ |= as_uint4(rays[first + i].hi) ^ bits;
+    return ((differ.x | differ.y | differ.z) & 0x80000000u) == 0u;
   }
 }
 

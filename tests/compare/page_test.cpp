@@ -8,6 +8,7 @@
 
 #include "gnomon/base/error.h"
 #include "gnomon/compare/axis.h"
+#include "gnomon/compare/base64.h"
 #include "gnomon/compare/charts.h"
 #include "gnomon/compare/page.h"
 #include "gnomon/compare/plots.h"

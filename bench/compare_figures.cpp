@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -225,20 +224,6 @@ std::string devices_page(const std::vector<Report>& reports) {
   return out;
 }
 
-// One file that is to hold a text.
-bool settle(const std::string& file, const std::string& text, bool check) {
-  const bool same = fs::exists(file) && page::read(file) == text;
-  if (same) return true;
-  if (check) {
-    std::fprintf(stderr, "%s is not what the stored rows give: run bench/figures.sh\n", file.c_str());
-    return false;
-  }
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw std::runtime_error("cannot write " + file);
-  return true;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -249,16 +234,16 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    if (argc == 4) return settle(argv[3], report_page(newest(argv[2]).at(0)), false) ? 0 : 1;
+    if (argc == 4) return page::settle(argv[3], report_page(newest(argv[2]).at(0)), false) ? 0 : 1;
     const bool check = argc > 6 && std::string(argv[6]) == "--check";
     const std::vector<Report> reports = newest(argv[1]);
-    bool same =
-        settle(argv[3], page::with_section(page::read(argv[3]), "compare", readme_section(reports)), check);
+    bool same = page::settle(
+        argv[3], page::with_section(page::read(argv[3]), "compare", readme_section(reports)), check);
     const fs::path results(argv[4]);
-    same = settle((results / "compare.md").string(), methods_page(reports), check) && same;
-    same = settle((results / "devices.md").string(), devices_page(newest(argv[2])), check) && same;
+    same = page::settle((results / "compare.md").string(), methods_page(reports), check) && same;
+    same = page::settle((results / "devices.md").string(), devices_page(newest(argv[2])), check) && same;
     for (const auto& [name, svg] : pictures(reports))
-      same = settle((fs::path(argv[5]) / name).string(), svg, check) && same;
+      same = page::settle((fs::path(argv[5]) / name).string(), svg, check) && same;
     return same ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "compare_figures: %s\n", error.what());

@@ -1,13 +1,12 @@
-// Writes what README, the page of devices and the pictures show of comparisons, from stored rows and from
-// nothing else; or checks that they are what the rows give.
+// Writes what README, the pages of methods and of devices and the pictures show of comparisons, from stored
+// rows and from nothing else; or checks that they are what the rows give. RESULTS is the pages' folder.
 //
-//   compare_figures COMPARE.jsonl DEVICES.jsonl README.md DEVICES.md PICTURES [--check]
+//   compare_figures COMPARE.jsonl DEVICES.jsonl README.md RESULTS PICTURES [--check]
 //   compare_figures --page COMPARE.jsonl PAGE.html    the first scene's page, without the pictures that rows
 //   do not hold
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -88,19 +87,68 @@ std::string methods_table(const Report& report) {
   return out;
 }
 
+std::string device_of(const DeviceReport& device) {
+  return device.name + " (driver " + device.driver + ")";
+}
+
+// Builders as they come and peers: variants, mixtures and published heuristics have '/', '+' or '@' in their
+// names.
+bool at_a_glance(const std::string& method) {
+  return method != kBaseline && method.find_first_of("/+@") == std::string::npos;
+}
+
+// One line a method, the same of each scene side by side.
+std::string glance_table(const std::vector<Report>& reports) {
+  std::string head = "| method |";
+  std::string rule = "\n|---|";
+  for (const Report& report : reports) {
+    head += " " + scene_of(report) + ": tracing | build | wrong answers |";
+    rule += "---|---|---|";
+  }
+  std::string out = head + rule + "\n";
+  for (const MethodFacts& method : reports.front().devices.front().methods) {
+    if (!at_a_glance(method.name)) continue;
+    out += "| " + method.name + " |";
+    for (const Report& report : reports) {
+      const DeviceReport& device = report.devices.front();
+      const Wrong wrong = wrong_of(device, method.name);
+      out += " " + range(trace_gain(device, kBaseline, method.name, kAllKinds, report.clock)) + " | " +
+             range(build_gain(device, kBaseline, method.name, report.clock)) + " | " +
+             std::to_string(wrong.wrong) + " of " + std::to_string(wrong.judged) + " |";
+    }
+    out += "\n";
+  }
+  return out;
+}
+
 std::string readme_section(const std::vector<Report>& reports) {
+  if (reports.empty()) return "";
+  std::string out;
+  for (const Report& report : reports)
+    out += (out.empty() ? "> " : ">\n> ") + advise(report, report.devices.front()).use + "\n";
+  return out + "\nTimes as fast as " + kBaseline +
+         ", in rounds that took turns: median (least–greatest).\n\n" + glance_table(reports) +
+         "\n![Speed of tracing by method, with its spread](bench/pictures/compare-gain.svg)\n\n"
+         "All methods, by kind of rays, with their memory: [methods](bench/results/compare.md). PoCL, its "
+         "portable path and Mesa's\nrusticl beside each other: [devices](bench/results/devices.md).\n";
+}
+
+std::string methods_page(const std::vector<Report>& reports) {
   std::string out =
-      "![Speed of tracing by method, with its spread](bench/pictures/compare-gain.svg)\n\n"
-      "[PoCL, its portable path and Mesa's rusticl](bench/results/devices.md) beside each other.\n\n";
+      "# Methods beside each other\n\n<!-- Written by compare_figures from compare.jsonl; take rows with "
+      "bench/rerun.sh compare. -->\n\n"
+      "What `gnomon compare` says of scenes, and every method. Times as fast as " +
+      std::string(kBaseline) +
+      ", round by round: median\n(least–greatest); memory over its. Methods are explained on every page that "
+      "`gnomon compare` writes.\n";
   for (const Report& report : reports) {
     const DeviceReport& device = report.devices.front();
     const Advice advice = advise(report, device);
-    out += "**" + scene_of(report) + "**, on " + device.name + " (driver " + device.driver + "), commit " +
-           report.commit + ", `" + report.command + "`:\n\n";
-    for (const std::string& sentence : {advice.use, advice.gain, advice.cost})
-      if (!sentence.empty()) out += "> " + sentence + "\n";
-    out += "\nTimes as fast as " + std::string(kBaseline) +
-           ", round by round: median (least–greatest); memory over its.\n\n" + methods_table(report) + "\n";
+    out += "\n## " + scene_of(report) + "\n\n`" + report.command + "` on " + device_of(device) + ", commit " +
+           report.commit + ":\n\n";
+    for (const std::string& sentence : advice.all())
+      if (!sentence.empty()) out += sentence + "\n\n";
+    out += methods_table(report);
   }
   return out;
 }
@@ -176,39 +224,26 @@ std::string devices_page(const std::vector<Report>& reports) {
   return out;
 }
 
-// One file that is to hold a text.
-bool settle(const std::string& file, const std::string& text, bool check) {
-  const bool same = fs::exists(file) && page::read(file) == text;
-  if (same) return true;
-  if (check) {
-    std::fprintf(stderr, "%s is not what the stored rows give: run bench/figures.sh\n", file.c_str());
-    return false;
-  }
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw std::runtime_error("cannot write " + file);
-  return true;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 6 && !(argc == 4 && std::string(argv[1]) == "--page")) {
-    std::fprintf(
-        stderr,
-        "usage: compare_figures COMPARE.jsonl DEVICES.jsonl README.md DEVICES.md PICTURES [--check]\n"
-        "       compare_figures --page COMPARE.jsonl PAGE.html\n");
+    std::fprintf(stderr,
+                 "usage: compare_figures COMPARE.jsonl DEVICES.jsonl README.md RESULTS PICTURES [--check]\n"
+                 "       compare_figures --page COMPARE.jsonl PAGE.html\n");
     return 2;
   }
   try {
-    if (argc == 4) return settle(argv[3], report_page(newest(argv[2]).at(0)), false) ? 0 : 1;
+    if (argc == 4) return page::settle(argv[3], report_page(newest(argv[2]).at(0)), false) ? 0 : 1;
     const bool check = argc > 6 && std::string(argv[6]) == "--check";
     const std::vector<Report> reports = newest(argv[1]);
-    bool same =
-        settle(argv[3], page::with_section(page::read(argv[3]), "compare", readme_section(reports)), check);
-    same = settle(argv[4], devices_page(newest(argv[2])), check) && same;
+    bool same = page::settle(
+        argv[3], page::with_section(page::read(argv[3]), "compare", readme_section(reports)), check);
+    const fs::path results(argv[4]);
+    same = page::settle((results / "compare.md").string(), methods_page(reports), check) && same;
+    same = page::settle((results / "devices.md").string(), devices_page(newest(argv[2])), check) && same;
     for (const auto& [name, svg] : pictures(reports))
-      same = settle((fs::path(argv[5]) / name).string(), svg, check) && same;
+      same = page::settle((fs::path(argv[5]) / name).string(), svg, check) && same;
     return same ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "compare_figures: %s\n", error.what());

@@ -7,8 +7,6 @@
 //
 // Inside the measured time: ours, the launches (rays and hits stay in device buffers); Embree's, filling its
 // ray structures from the same array and writing answers back, as any caller with a batch must.
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -22,6 +20,7 @@
 #include "gnomon/peers/embree_peer.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon/scene/import.h"
+#include "gnomon_bench/settings.h"
 #include "gnomon_commit.h"
 
 namespace {
@@ -30,78 +29,6 @@ using namespace gnomon::bench;
 using namespace gnomon::peers;
 using gnomon::Hit;
 using gnomon::Ray;
-
-// A block tests eight triangles at the price of about two visits: leaves near that size are right, and the
-// collapse merges smaller ones anyway.
-gnomon::BuildOptions options_for_wide_trees() {
-  gnomon::BuildOptions options;
-  options.cost_triangle = 0.25F;
-  return options;
-}
-
-struct Settings {
-  std::vector<std::string> scenes{"atrium", "city", "terrain", "random"};
-  std::uint64_t triangles = 1'000'000;
-  std::vector<std::string> rays{"primary",  "bounce",      "bounce-shuffled", "shadow",
-                                "sun-axis", "sun-oblique", "random"};
-  std::vector<std::string> flavours{"packet", "wide"};
-  std::vector<std::string> builders{"balanced"};
-  std::uint64_t ray_count = 262'144;
-  std::uint64_t seed = 1;
-  int rounds = 7;
-  bool all_threads = false;
-  bool build = true;
-  gnomon::BuildOptions options = options_for_wide_trees();
-  gnomon::CollapseOptions collapse;
-};
-
-void add_options(CLI::App& program, Settings& s) {
-  program.add_option("--scenes", s.scenes, "generators or scene files, by commas")
-      ->delimiter(',')
-      ->capture_default_str();
-  program.add_option("--triangles", s.triangles, "of generated scenes")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 31U))
-      ->capture_default_str();
-  program.add_option("--rays", s.rays, "which kinds, by commas; none: builds only")
-      ->delimiter(',')
-      ->check(CLI::IsMember(
-          {"primary", "bounce", "bounce-shuffled", "shadow", "sun-axis", "sun-oblique", "random", "none"}))
-      ->capture_default_str();
-  program.add_option("--flavours", s.flavours, "of our tracer, by commas; sorted: packet, rays sorted first")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"packet", "wide", "portable", "portable-packet", "thread", "sorted", "compact"}))
-      ->capture_default_str();
-  program
-      .add_option("--builders", s.builders,
-                  "of our trees, by commas; balanced is set beside MEDIUM, fast beside LOW and best beside "
-                  "HIGH, these two with "
-                  "single rays")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"balanced", "fast", "best"}))
-      ->capture_default_str();
-  program.add_option("--ray-count", s.ray_count, "rays a batch")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 31U))
-      ->capture_default_str();
-  program.add_option("--rounds", s.rounds, "that count, after one to warm up")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  program.add_option("--seed", s.seed, "of scenes and rays")->capture_default_str();
-  program.add_flag("--all-threads", s.all_threads,
-                   "all compute units and wall time, instead of one and CPU time");
-  program.add_flag("!--no-build", s.build, "leave out the build rows");
-  program.add_option("--bins", s.options.bins, "of our trees")->capture_default_str();
-  program.add_option("--max-leaf", s.options.max_leaf_size, "of our trees")->capture_default_str();
-  program.add_option("--cost-traversal", s.options.cost_traversal, "of our trees")->capture_default_str();
-  program.add_option("--cost-triangle", s.options.cost_triangle, "of our trees")->capture_default_str();
-  program
-      .add_option("--subtree-size", s.options.subtree_size,
-                  "triangles one work-group builds; 0: as the device likes")
-      ->capture_default_str();
-  program.add_option("--cost-node", s.collapse.cost_node, "of the collapse to wide trees")
-      ->capture_default_str();
-  program.add_option("--cost-block", s.collapse.cost_block, "of the collapse to wide trees")
-      ->capture_default_str();
-}
 
 gnomon::Scene scene_from(const std::string& name, const Settings& settings) {
   for (const auto& generator : gnomon::generators())

@@ -63,6 +63,19 @@ inline std::string with_section(const std::string& text, const std::string& name
   return text.substr(0, from + begin.size()) + content + text.substr(to);
 }
 
+// One file that is to hold a text: writes it, or, to check, says where it is another.
+inline bool settle(const std::string& file, const std::string& text, bool check) {
+  if (std::ifstream(file).good() && read(file) == text) return true;
+  if (check) {
+    std::fprintf(stderr, "%s is not what its rows give; bench/figures.sh writes it anew\n", file.c_str());
+    return false;
+  }
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw std::runtime_error("cannot write " + file);
+  return true;
+}
+
 // The whole program PROGRAM ROWS.jsonl... PAGE.md [--check]: writes what `text_of` makes of all rows' text,
 // or, for --check, exits 1 where the page is another.
 template <typename TextOf>
@@ -79,20 +92,11 @@ int run(int argc, char** argv, const char* program, TextOf text_of) {
   try {
     std::string rows;
     for (const std::string& file : files) rows += read(file);
-    const std::string text = text_of(rows);
-    if (check) {
-      if (read(page) == text) return 0;
-      std::fprintf(stderr, "%s is not what its rows give; bench/figures.sh writes it anew\n", page.c_str());
-      return 1;
-    }
-    std::ofstream out(page, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw std::runtime_error("cannot write " + page);
+    return settle(page, text_of(rows), check) ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", program, error.what());
     return 1;
   }
-  return 0;
 }
 
 }  // namespace page

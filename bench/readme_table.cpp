@@ -4,7 +4,6 @@
 //   readme_table ROWS.jsonl EXAMPLE.cpp README.md [--check]
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -20,19 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-std::string read(const char* path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::runtime_error(std::string("cannot read ") + path);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::string number(double value, const char* format = "%.2f") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 std::string spread(const json& s) {
+  const auto number = [](const json& value) { return page::number(value, "%.2f"); };
   return number(s.at("median")) + " (" + number(s.at("min")) + "–" + number(s.at("max")) + ")";
 }
 
@@ -92,10 +80,10 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const std::string before = read(argv[3]);
-    const std::string example = "```cpp\n" + read(argv[2]) + "```\n";
-    const std::string after =
-        page::with_section(page::with_section(before, "speed", table(read(argv[1]))), "example", example);
+    const std::string before = page::read(argv[3]);
+    const std::string example = "```cpp\n" + page::read(argv[2]) + "```\n";
+    const std::string after = page::with_section(
+        page::with_section(before, "speed", table(page::read(argv[1]))), "example", example);
     if (argc > 4 && std::string(argv[4]) == "--check") {
       if (after != before)
         std::fprintf(stderr, "README.md is behind its rows or example: run readme_table without --check\n");

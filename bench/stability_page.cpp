@@ -4,7 +4,6 @@
 //
 //   stability_page ROWS.jsonl... PAGE.md [--check]
 #include <algorithm>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -13,79 +12,15 @@
 #include <nlohmann/json.hpp>
 
 #include "page_file.h"
+#include "stability_page/fast_accuracy.h"
+#include "stability_page/rows.h"
 
 namespace {
 
-using nlohmann::json;
+using namespace stability_page;
 using page::head_of;
 using page::line_of;
 using page::number;
-using Rows = std::vector<json>;
-using Names = std::vector<std::string>;
-
-std::uint64_t count_of(const json& row, const char* key) {
-  return row.at(key).get<std::uint64_t>();
-}
-
-// A sum over rows; rows of before the field was there say so.
-std::string sum_of(const Rows& rows, const char* key) {
-  std::uint64_t sum = 0;
-  for (const json& row : rows) {
-    if (!row.contains(key)) return "–";
-    sum += count_of(row, key);
-  }
-  return std::to_string(sum);
-}
-
-std::string largest_error(const Rows& rows) {
-  double most = 0.0;
-  for (const json& row : rows) {
-    const json& max = row.at("t_error_ulp").at("max");
-    if (max.is_null()) return "> 8";
-    most = std::max(most, max.get<double>());
-  }
-  return number(most, most < 100.0 ? "%.3f" : "%.0f");
-}
-
-std::string verdicts(const Rows& rows) {
-  const auto ok =
-      std::count_if(rows.begin(), rows.end(), [](const json& r) { return r.at("ok").get<bool>(); });
-  const std::string text = std::to_string(ok) + " of " + std::to_string(rows.size());
-  return static_cast<std::size_t>(ok) == rows.size() ? text : std::string("**").append(text).append("**");
-}
-
-const Names kFaults{"lost", "false_hits", "wrong_primitive", "any_closest_disagree"};
-
-// The four counts of faults, as the tables' columns name them.
-Names faults_of(const Rows& rows) {
-  Names cells;
-  for (const std::string& key : kFaults) cells.push_back(sum_of(rows, key.c_str()));
-  return cells;
-}
-
-template <typename Key>
-std::vector<std::pair<std::string, Rows>> grouped(const Rows& rows, Key key) {
-  std::vector<std::pair<std::string, Rows>> groups;
-  for (const json& row : rows) {
-    const std::string name = key(row);
-    auto at = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == name; });
-    if (at == groups.end()) at = groups.insert(groups.end(), {name, {}});
-    at->second.push_back(row);
-  }
-  return groups;
-}
-
-std::string text_at(const json& row, const char* key) {
-  return row.at(key).get<std::string>();
-}
-
-std::string number_of_case(const json& row) {
-  return std::to_string(count_of(row, "case"));
-}
-
-void append(Names& cells, const Names& more) {
-  cells.insert(cells.end(), more.begin(), more.end());
-}
 
 class Page {
  public:
@@ -121,7 +56,7 @@ class Page {
     for (const auto& [device, rows] : by_device(cases_)) out += catalogue(device, rows);
     out += peers();
     for (const json& row : soaks_) out += soak(row);
-    return out + accuracy();
+    return out + fast_accuracy(accuracy_);
   }
 
  private:
@@ -161,14 +96,6 @@ class Page {
       cells.push_back(largest_error(some));
       out += line_of(cells);
     }
-    return out;
-  }
-
-  static std::string commits(const Rows& rows) {
-    std::set<std::string> all;
-    for (const json& row : rows) all.insert(text_at(row, "commit"));
-    std::string out;
-    for (const std::string& one : all) out.append(" ").append(one);
     return out;
   }
 
@@ -249,51 +176,6 @@ class Page {
     std::string out;
     for (const json& name : list) out.append(out.empty() ? "" : ", ").append(name.get<std::string>());
     return out;
-  }
-
-  [[nodiscard]] std::string accuracy() const {
-    Rows speeds;
-    Rows hard;
-    for (const json& row : accuracy_) (row.at("kind") == "speed" ? speeds : hard).push_back(row);
-    std::string out =
-        "\n## Fast accuracy\n\n`trace --accuracy fast` beside watertight tracing of the same rays in one "
-        "process: how "
-        "many times as fast, by process CPU time (geometric mean of batches' medians, least and most of "
-        "them), and "
-        "the hits that this costs. The last lines: the catalogue. Commit" +
-        commits(accuracy_) + ", " + text_at(accuracy_.front(), "device") + ".\n" +
-        head_of({"flavour", "rays of", "batches", "times as fast", "hits", "lost", "added",
-                 "of another triangle", "t off by, ulp"});
-    const auto flavour_of = [](const json& row) { return text_at(row, "flavour"); };
-    for (const auto& [flavour, rows] : grouped(speeds, flavour_of)) {
-      for (const auto& [kind, some] :
-           grouped(rows, [](const json& row) { return text_at(row, "rays_kind"); }))
-        out += cost_line(flavour, kind, some);
-      out += cost_line(flavour, "all kinds", rows);
-    }
-    for (const auto& [flavour, rows] : grouped(hard, flavour_of))
-      out += cost_line(flavour, "the catalogue", rows);
-    return out;
-  }
-
-  static std::string cost_line(const std::string& flavour, const std::string& kind, const Rows& rows) {
-    Rows costs;
-    std::vector<double> ratios;
-    double worst = 0.0;
-    for (const json& row : rows) {
-      costs.push_back(row.at("cost"));
-      worst = std::max(worst, row.at("cost").at("max_t_ulp").get<double>());
-      if (row.contains("ratio")) ratios.push_back(row.at("ratio").at("median"));
-    }
-    std::string faster = "–";
-    if (!ratios.empty()) {
-      const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
-      faster = number(page::geomean(ratios), "%.2f") + " (" + number(*least, "%.2f") + "–" +
-               number(*most, "%.2f") + ")";
-    }
-    return line_of({flavour, kind, std::to_string(rows.size()), faster, sum_of(costs, "hits"),
-                    sum_of(costs, "lost"), sum_of(costs, "added"), sum_of(costs, "other_triangle"),
-                    number(worst, "%.0f")});
   }
 
   Rows cases_;

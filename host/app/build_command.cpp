@@ -122,7 +122,7 @@ int run(const Options& options, Console& console) {
   const BuildOptions tree = with_heuristic(options.build, options.heuristic, scene);
   TimedBuild build = build_for_use(context, scene, tree, options.runs, console.progress());
   stop_if_interrupted();
-  const PlanTask task{context, scene, build, {}, {}};
+  const PlanTask task{context, scene, build, {}, "", {}};
   const PlanOutcome plan = plan_of(options, task, console.progress());
   stop_if_interrupted();
   if (!plan.chosen.empty() && plan.tree(0) != nullptr) adopt(build, task, *plan.tree(0));
@@ -175,9 +175,14 @@ void add_build_command(CLI::App& program, OutputOptions& output, Action& action)
       "that cost rays less, far less where long triangles overlap.\n"
       "The tree depends on the triangles and the options under \"Tree\" and \"Rays\" alone: its hash is the "
       "same\n"
-      "on every device. Times by stage are the device's own; the total is wall clock and includes the upload."
-      "\n\n" +
-      std::string(kHeuristicHelp) +
+      "on every device. Times by stage are the device's own; the total is wall clock and includes the "
+      "upload:\n"
+      "  prepare, bin, split, partition  boxes of triangles, then large nodes, a level at a time\n"
+      "  subtrees, compact, gather       the rest, a work-group each; nodes and triangles side by side\n"
+      "  parts, load to renumber         of --builder best: dividing triangles, moving subtrees\n"
+      "  bound to tree over clusters     of --builder fast: along the curve, chunk by chunk, and their "
+      "tree\n\n" +
+      explain_plans() + "\n" + std::string(kHeuristicHelp) +
       "\nExamples:\n  gnomon build model.glb\n  gnomon build gen:city:1M --bins 32 --device gpu --json\n"
       "  gnomon build gen:city:1M --heuristic window --light 0\n"
       "  gnomon build gen:city:1M --builder fast\n"

@@ -62,6 +62,7 @@ struct PlanTask {
   const Scene& scene;
   const TimedBuild& plain;
   std::vector<RaysToCome> to_come;
+  std::string counted{};  // what they are, where their number alone puzzles: "1000 in each of 7 passes"
   // Rays to fit to and to judge by; asked for once it is clear that planning can pay.
   std::function<std::vector<PlanRays>()> draw;
   TreesWanted wanted = TreesWanted::kOneEach;
@@ -84,5 +85,8 @@ void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree);
 void add_plan(Json& document, const PlanOutcome& outcome);
 // A line or two for people.
 [[nodiscard]] std::string describe(const PlanOutcome& outcome);
+
+// When a plan is made and in which work it reckons; for the footer of --help.
+[[nodiscard]] std::string explain_plans();
 
 }  // namespace gnomon::app

@@ -60,7 +60,7 @@ PlanOutcome plan_of(const Options& options, const cl::Context& context, const Ti
   const double most =
       options.plan.expected != 0 ? static_cast<double>(options.plan.expected) : kMostRaysOfPath * paths;
   const std::vector<Ray> seen = primary_rays(scene, 256, options.render.seed);
-  PlanTask task{context, scene, build, {{Query::kClosest, seen, most}}, {}};
+  PlanTask task{context, scene, build, {{Query::kClosest, seen, most}}, "at most", {}};
   if (options.plan.name == "auto") {
     const Outlook outlook = outlook_of(build.host, scene.triangles, task.to_come);
     if (!outlook.pays) return plan_for(options.plan, task, progress);
@@ -267,8 +267,9 @@ void add_render_command(CLI::App& program, OutputOptions& output, Action& action
       "sky. A preview has direct light, matt surfaces and light that bounced once, smoothed. With --samples "
       "paths\n"
       "are traced: matt and glossy surfaces and metals, all bounces. Ctrl-C leaves no half picture or "
-      "record.\n\n"
-      "Examples:\n  gnomon render model.glb -o model.png\n"
+      "record.\n\n" +
+      explain_plans() +
+      "\nExamples:\n  gnomon render model.glb -o model.png\n"
       "  gnomon render gen:atrium -o atrium.png --samples 64 --record rays.gnr\n"
       "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png --preview 32");
   command->callback([&action, options, command] {

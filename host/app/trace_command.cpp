@@ -138,7 +138,7 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
                   " of another triangle; t off by up to " + fixed(trace.cost->max_t_ulp, 0) + " ulp");
   }
   facts.add("work", fixed(trace.boxes_per_ray, 2) + " boxes and " + fixed(trace.triangles_per_ray, 2) +
-                        " triangles a ray");
+                        " triangles tested a ray");
   return facts.text();
 }
 
@@ -153,16 +153,16 @@ void check_plan(const Options& options) {
           options.plan.name);
 }
 
-// Rays that this run traces: to warm up, timed, counted.
-double rays_traced(const Options& options, std::size_t rays) {
-  return static_cast<double>(rays) * static_cast<double>(options.repeat + 2);
+// How often this run traces its rays: to warm up, timed, counted.
+std::uint64_t passes(const Options& options) {
+  return options.repeat + 2;
 }
 
 PlanTask plan_task(const Options& options, const cl::Context& context, const Scene& scene,
                    const TimedBuild& build, std::span<const Ray> rays, bool any_hit,
                    const Progress& progress) {
-  const double expected = options.plan.expected != 0 ? static_cast<double>(options.plan.expected)
-                                                     : rays_traced(options, rays.size());
+  const bool told = options.plan.expected != 0;
+  const double expected = static_cast<double>(told ? options.plan.expected : rays.size() * passes(options));
   const Query query = any_hit ? Query::kAny : Query::kClosest;
   const auto draw = [&options, &context, &scene, &build, rays, query, expected, progress] {
     PlanRays asked = options.rays_in.file.empty()
@@ -172,7 +172,9 @@ PlanTask plan_task(const Options& options, const cl::Context& context, const Sce
     asked.query = query;
     return std::vector<PlanRays>{std::move(asked)};
   };
-  return {context, scene, build, {{query, rays, expected}}, draw};
+  const std::string counted =
+      told ? "" : std::to_string(rays.size()) + " in each of " + std::to_string(passes(options)) + " passes";
+  return {context, scene, build, {{query, rays, expected}}, counted, draw};
 }
 
 int run(const Options& options, Console& console) {
@@ -225,6 +227,12 @@ const char* const kFiles =
     "The hit of a ray has the ray's place. The point hit is origin + t * direction = (1-u-v) v0 + u v1 + v "
     "v2.\n";
 
+const char* const kFigures =
+    "Speed is of a timed pass: by the device's clock, or by the wall clock and with transfers where it has "
+    "none.\nWork is boxes and triangles tested a ray, counted in a pass of its own; what a packet of rays "
+    "tests "
+    "for all of\nthem counts once.\n";
+
 }  // namespace
 
 void add_trace_command(CLI::App& program, OutputOptions& output, Action& action) {
@@ -275,10 +283,11 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
   add_heuristic_options(*command, options->heuristic);
   add_tree_file_option(*command, options->tree_file);
   add_plan_options(*command, options->plan,
-                   "rays to come, that a tree must repay itself over; default: those that this run traces");
+                   "rays to come, that a tree must repay itself over; default: those that this run traces, "
+                   "--count in each of --repeat and two more passes (to warm up, and to count work)");
   add_device_options(*command, options->device);
   add_output_options(*command, output);
-  command->footer(explain_ray_kinds() + "\n" + kFiles +
+  command->footer(explain_ray_kinds() + "\n" + kFiles + "\n" + kFigures + explain_plans() +
                   "\nExamples:\n  gnomon trace model.glb --rays bounce --count 2M\n"
                   "  gnomon trace model.glb --rays-in my.rays --hits-out my.hits\n"
                   "  gnomon build model.glb -o model.gnb && gnomon trace model.glb --tree model.gnb\n"

@@ -5,9 +5,9 @@
 
 #include "gnomon/base/stats.h"
 #include "gnomon/compare/analysis.h"
+#include "gnomon/compare/base64.h"
 #include "gnomon/compare/charts.h"
 #include "gnomon/compare/method.h"
-#include "gnomon/compare/report_json.h"
 #include "gnomon/compare/words.h"
 
 namespace gnomon::compare {
@@ -20,6 +20,28 @@ constexpr double kMostRaysLog = 12.0;
 
 std::string picture(const std::string& png, const std::string& alternative) {
   return "<img alt=\"" + escaped(alternative) + "\" src=\"data:image/png;base64," + to_base64(png) + "\">";
+}
+
+// Text in which words that `keep` picks are not broken where a line ends, as browsers do behind hyphens.
+// `keep` gets a word without the punctuation behind it.
+template <typename Keep>
+std::string unbroken(const std::string& text, Keep keep) {
+  std::string out;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find(' ', from), text.size());
+    const std::string word = text.substr(from, end - from);
+    const std::size_t letters = word.find_last_not_of(",.:;)") + 1;
+    out += keep(word.substr(0, letters)) ? "<span class=\"whole\">" + escaped(word.substr(0, letters)) +
+                                               "</span>" + escaped(word.substr(letters))
+                                         : escaped(word);
+    if (end < text.size()) out += ' ';
+    from = end + 1;
+  }
+  return out;
+}
+
+bool is_option(const std::string& word) {
+  return word.starts_with("--");
 }
 
 std::string figure(const Chart& chart) {
@@ -42,9 +64,13 @@ std::string html_fact(const std::string& name, const std::string& value) {
 }
 
 std::string DevicePage::advice() const {
+  const auto is_method = [this](const std::string& word) {
+    return std::any_of(device_.methods.begin(), device_.methods.end(),
+                       [&](const MethodFacts& method) { return method.name == word; });
+  };
   std::string out;
   for (const std::string& sentence : advise(report_, device_).all())
-    if (!sentence.empty()) out += html_element("p", escaped(sentence));
+    if (!sentence.empty()) out += html_element("p", unbroken(sentence, is_method));
   return "<div class=\"advice\">\n" + out + "</div>\n";
 }
 
@@ -119,10 +145,11 @@ std::string DevicePage::table() const {
     const Spread seconds = spread_of(seconds_of(build->rounds, report_.clock));
     rows +=
         "<tr data-letter=\"" + letter + "\">" + html_cell(letter) +
-        html_cell(escaped(method.name) + "<small>" + escaped(method.what) +
-                      (method.options.empty() ? "" : ": <code>" + escaped(method.options) + "</code>") +
-                      "</small>",
-                  "name") +
+        html_cell(
+            escaped(method.name) + "<small>" + unbroken(method.what, is_option) +
+                (method.options.empty() ? "" : ": <code>" + unbroken(method.options, is_option) + "</code>") +
+                "</small>",
+            "name") +
         html_cell(line == lines.end() ? "–" : time_text(time), "time") +
         html_cell(line == lines.end() || base_time == 0.0 ? "–" : fixed(time / base_time, 2), "ratio") +
         html_cell(seconds.count == 0 ? "–" : time_text(seconds.median)) +
@@ -134,7 +161,7 @@ std::string DevicePage::table() const {
         "</tr>\n";
   }
   return "<h3>What the letters stand for</h3>\n<div class=\"wide\"><table>\n<thead><tr><th></th><th "
-         "class=\"name\">method</th><th>build and rays</th><th>over " +
+         "class=\"name\">method</th><th>build&nbsp;and rays</th><th>over " +
          std::string(kBaseline) +
          "</th><th>build</th><th>a ray</th><th>memory</th><th>SAH "
          "cost</th><th>wrong</th></tr></thead>\n<tbody>\n" +
@@ -187,8 +214,10 @@ std::string DevicePage::decisions() const {
   std::string rows;
   for (const DecisionRow& row : device_.decisions) {
     if (row.method.empty()) continue;
+    // What stands behind it is prices in units, which gnomon plan explains.
+    const std::string reason = row.reason.substr(0, row.reason.find(';'));
     rows += "<tr>" + html_cell(escaped(row.kind) + "<small>" + escaped(row.query) + " hit</small>", "name") +
-            html_cell(escaped(row.kept) + "<small>" + escaped(row.reason) + "</small>", "name") +
+            html_cell(escaped(row.kept) + "<small>" + escaped(reason) + "</small>", "name") +
             html_cell(significant(row.baseline_cost, 4)) + html_cell(significant(row.cost, 4)) +
             html_cell(row.baseline_cost > 0.0 ? fixed(row.cost / row.baseline_cost, 3) : "–") +
             html_cell(std::to_string(row.probes)) + html_cell(fixed(row.planning_share, 1)) + "</tr>\n";

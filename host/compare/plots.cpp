@@ -21,7 +21,9 @@ constexpr double kLetterGap = 16.5;
 constexpr double kLetterWidth = 8.3;  // of a digit in DejaVu Sans, the widest of the usual fonts
 
 double width_of(const std::string& text) {
-  return kLetterWidth * static_cast<double>(text.size());
+  double width = kLetterWidth * static_cast<double>(text.size());
+  for (const char c : text) width += c == 'M' ? 3.0 : c == 'G' ? 1.9 : 0.0;  // of millions and billions
+  return width;
 }
 
 void x_axis(Svg& svg, const LogAxis& axis, double top, double bottom, const std::string& label) {

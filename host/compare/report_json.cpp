@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "gnomon/base/error.h"
+#include "gnomon/compare/base64.h"
 #include "gnomon/compare/report_rows.h"
 
 namespace gnomon::compare {
@@ -20,12 +21,35 @@ Json methods_json(const DeviceReport& device) {
   return out;
 }
 
-Json device_json(const Report& report, const DeviceReport& device) {
-  Json out{{"device", device.name},       {"driver", device.driver},
-           {"platform", device.platform}, {"opencl", device.opencl},
-           {"device_kind", device.kind},  {"compute_units", device.compute_units},
-           {"complete", device.complete}, {"done", device.done}};
+void put_facts(Json& out, const DeviceReport& device) {
+  out["device"] = device.name;
+  out["driver"] = device.driver;
+  out["platform"] = device.platform;
+  out["opencl"] = device.opencl;
+  out["device_kind"] = device.kind;
+  out["compute_units"] = device.compute_units;
+  out["complete"] = device.complete;
   out["methods"] = methods_json(device);
+}
+
+void put_facts(Json& out, const Report& report) {
+  out["version"] = report.version;
+  out["commit"] = report.commit;
+  out["command"] = report.command;
+  out["scene"] = report.scene;
+  out["scene_name"] = report.scene_name;
+  out["scene_hash"] = report.scene_hash;
+  out["triangles"] = report.triangles;
+  out["clock"] = report.clock;
+  out["peer_note"] = text_or_null(report.peer_note);
+  out["options"] = Json::object();
+  for (const auto& [name, value] : report.options) out["options"][name] = value;
+}
+
+Json device_json(const Report& report, const DeviceReport& device) {
+  Json out;
+  put_facts(out, device);
+  out["done"] = device.done;
   out["rows"] = rows_of(report, device);
   Json png = Json::object();
   for (const auto& [name, bytes] : device.pictures.png) png[name] = to_base64(bytes);
@@ -43,14 +67,7 @@ Family family_from(const std::string& name) {
   throw Error(ErrorCode::kBadScene, "\"" + name + "\" is no family of methods");
 }
 
-void read_methods(const Json& in, DeviceReport& device) {
-  for (const Json& m : in)
-    device.methods.push_back(
-        {m.at("name"), family_from(m.at("family")), m.at("what"), m.at("options"), m.at("exact")});
-}
-
-DeviceReport read_device(const Json& in) {
-  DeviceReport device;
+void read_facts(const Json& in, DeviceReport& device) {
   device.name = in.at("device");
   device.driver = in.at("driver");
   device.platform = in.at("platform");
@@ -58,8 +75,29 @@ DeviceReport read_device(const Json& in) {
   device.kind = in.at("device_kind");
   device.compute_units = in.at("compute_units");
   device.complete = in.at("complete");
+  for (const Json& m : in.at("methods"))
+    device.methods.push_back(
+        {m.at("name"), family_from(m.at("family")), m.at("what"), m.at("options"), m.at("exact")});
+}
+
+void read_facts(const Json& in, Report& report) {
+  report.version = in.at("version");
+  report.commit = in.at("commit");
+  report.command = in.at("command");
+  report.scene = in.at("scene");
+  report.scene_name = in.at("scene_name");
+  report.scene_hash = in.at("scene_hash");
+  report.triangles = in.at("triangles");
+  report.clock = in.at("clock");
+  report.peer_note = text_of(in.at("peer_note"));
+  report.options.clear();
+  for (const auto& [name, value] : in.at("options").items()) report.options.emplace_back(name, value);
+}
+
+DeviceReport read_device(const Json& in) {
+  DeviceReport device;
+  read_facts(in, device);
   device.done = in.at("done").get<std::vector<std::string>>();
-  read_methods(in.at("methods"), device);
   for (const Json& row : in.at("rows")) read_row(row, device);
   const Json& pictures = in.at("pictures");
   device.pictures.width = pictures.at("width");
@@ -72,53 +110,10 @@ DeviceReport read_device(const Json& in) {
 
 // What a device's rows do not say of themselves.
 Json run_row(const Report& report, const DeviceReport& device) {
-  Json row{{"schema", kSchema},
-           {"bench", "compare"},
-           {"task", "run"},
-           {"commit", report.commit},
-           {"device", device.name},
-           {"driver", device.driver},
-           {"scene", report.scene},
-           {"scene_hash", report.scene_hash},
-           {"triangles", report.triangles},
-           {"clock", report.clock},
-           {"version", report.version},
-           {"command", report.command},
-           {"scene_name", report.scene_name},
-           {"peer_note", text_or_null(report.peer_note)},
-           {"platform", device.platform},
-           {"opencl", device.opencl},
-           {"device_kind", device.kind},
-           {"compute_units", device.compute_units},
-           {"complete", device.complete}};
-  row["options"] = Json::object();
-  for (const auto& [name, value] : report.options) row["options"][name] = value;
-  row["methods"] = methods_json(device);
+  Json row{{"schema", kSchema}, {"bench", "compare"}, {"task", "run"}};
+  put_facts(row, report);
+  put_facts(row, device);
   return row;
-}
-
-void read_run_row(const Json& row, Report& report) {
-  report.version = row.at("version");
-  report.commit = row.at("commit");
-  report.command = row.at("command");
-  report.scene = row.at("scene");
-  report.scene_name = row.at("scene_name");
-  report.scene_hash = row.at("scene_hash");
-  report.triangles = row.at("triangles");
-  report.clock = row.at("clock");
-  report.peer_note = text_of(row.at("peer_note"));
-  report.options.clear();
-  for (const auto& [name, value] : row.at("options").items()) report.options.emplace_back(name, value);
-  DeviceReport device;
-  device.name = row.at("device");
-  device.driver = row.at("driver");
-  device.platform = row.at("platform");
-  device.opencl = row.at("opencl");
-  device.kind = row.at("device_kind");
-  device.compute_units = row.at("compute_units");
-  device.complete = row.at("complete");
-  read_methods(row.at("methods"), device);
-  report.devices.push_back(std::move(device));
 }
 
 }  // namespace
@@ -151,7 +146,8 @@ std::vector<Report> from_rows_text(const std::string& text, const std::string& s
         if (reports.empty() || reports.back().command != row.at("command") ||
             reports.back().commit != row.at("commit") || reports.back().scene_hash != row.at("scene_hash"))
           reports.emplace_back();
-        read_run_row(row, reports.back());
+        read_facts(row, reports.back());
+        read_facts(row, reports.back().devices.emplace_back());
       } else if (reports.empty()) {
         throw Error(ErrorCode::kBadScene, "no row of task run before it");
       } else {
@@ -165,20 +161,8 @@ std::vector<Report> from_rows_text(const std::string& text, const std::string& s
 }
 
 std::string to_json_text(const Report& report) {
-  Json out{{"schema", kSchema},
-           {"bench", "compare"},
-           {"complete", report.complete()},
-           {"version", report.version},
-           {"commit", report.commit},
-           {"command", report.command},
-           {"scene", report.scene},
-           {"scene_name", report.scene_name},
-           {"scene_hash", report.scene_hash},
-           {"triangles", report.triangles},
-           {"clock", report.clock},
-           {"peer_note", text_or_null(report.peer_note)}};
-  out["options"] = Json::object();
-  for (const auto& [name, value] : report.options) out["options"][name] = value;
+  Json out{{"schema", kSchema}, {"bench", "compare"}, {"complete", report.complete()}};
+  put_facts(out, report);
   out["devices"] = Json::array();
   for (const DeviceReport& device : report.devices) out["devices"].push_back(device_json(report, device));
   return out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -192,16 +176,7 @@ Report from_json_text(const std::string& text, const std::string& source) {
       throw Error(ErrorCode::kBadScene, "its schema is " + in.at("schema").dump() + ", this program reads " +
                                             std::to_string(kSchema));
     Report report;
-    report.version = in.at("version");
-    report.commit = in.at("commit");
-    report.command = in.at("command");
-    report.scene = in.at("scene");
-    report.scene_name = in.at("scene_name");
-    report.scene_hash = in.at("scene_hash");
-    report.triangles = in.at("triangles");
-    report.clock = in.at("clock");
-    report.peer_note = text_of(in.at("peer_note"));
-    for (const auto& [name, value] : in.at("options").items()) report.options.emplace_back(name, value);
+    read_facts(in, report);
     for (const Json& device : in.at("devices")) report.devices.push_back(read_device(device));
     return report;
   } catch (const std::exception& error) {

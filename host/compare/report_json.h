@@ -7,19 +7,19 @@
 // what, options), "done" (finished steps), "pictures" (PNG in base64), and "rows". Each row stands by itself:
 // "schema", "bench", "task", "name" (stable for ever), "commit", "device", "driver", "scene", "scene_hash",
 // "triangles", "method", and by task
-//   build       wall_s, cpu_s (seconds of each round; equal places in different rows ran next to each other),
-//   real_time and
-//               cpu_time (median ns a triangle, "time_unit"), bytes, scratch_bytes, tree_hash, nodes,
-//               max_depth, sah_cost, flavour
+//   build       wall_s, cpu_s (seconds of each round; equal places in different rows ran next to each
+//               other), real_time, cpu_time (median ns a triangle, "time_unit"), bytes, scratch_bytes,
+//               tree_hash, nodes, max_depth, sah_cost, flavour
 //   trace       rays (kind), query, ray_count, hits, wall_s, cpu_s, real_time and cpu_time (median ns a ray),
 //               boxes_per_ray, triangles_per_ray (null: not counted)
 //   accuracy    rays, judged, hits, lost, false_hits, wrong_primitive, any_closest_disagree, max_t_error_ulp,
 //               t_error_steps ([upper end in ulp, hits]; the last end null), same_as (null: judged itself)
 //   prediction  rays, ray_count, predicted, measured, standard_error
 //   decision    rays, query, expected_rays, kept, reason, probes, baseline_cost, cost, planning_share
-//   size        rays, size (triangles of the scene at that size), ray_count, thinned, build_wall_s ...
-//   trace_cpu_s area        area, ray_count, boxes_per_ray, triangles_per_ray left_out    what, reason;
-//   method null: all
+//   size        rays, size (triangles of the scene at that size), ray_count, thinned, build_wall_s,
+//               build_cpu_s, trace_wall_s, trace_cpu_s
+//   area        area, ray_count, boxes_per_ray, triangles_per_ray
+//   left_out    what, reason; method null: all
 // build, trace and size also have ratio(s): {median, min, max, n} of the baseline's time over this method's,
 // round by round, by the report's clock.
 #pragma once
@@ -44,9 +44,5 @@ namespace gnomon::compare {
 
 // A line per device, method and kind of rays, with a head; empty cells where there is no value.
 [[nodiscard]] std::string to_csv(const Report& report);
-
-// RFC 4648.
-[[nodiscard]] std::string to_base64(const std::string& bytes);
-[[nodiscard]] std::string from_base64(const std::string& text);
 
 }  // namespace gnomon::compare

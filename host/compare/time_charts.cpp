@@ -153,18 +153,19 @@ class TimeCharts {
         if (!never.empty()) row.remark = "never: " + list_text(never);
         if (!always.empty())
           row.remark += (row.remark.empty() ? "at once: " : "; at once: ") + list_text(always);
-        if (row.remark.size() > 34)
+        // It shares the line with the name.
+        if (row.remark.size() > std::min<std::size_t>(34, 50 - std::min<std::size_t>(50, row.name.size())))
           row.remark = std::to_string(never.size()) + " of " + std::to_string(all) + " kinds never";
       }
       plot.rows.push_back(std::move(row));
     }
     if (plot.rows.empty()) return;
-    list_.add(
-        "break-even", "Rays that pay a build back",
-        "Medians, whatever their spread: the chart above says which gains are sure. Never: it builds and "
-        "traces slower, or is "
-        "ahead for the first rays only.",
-        draw(plot));
+    list_.add("break-even", "Rays that pay a build back",
+              "Medians, whatever their spread: the first of these charts says which gains are sure. Never: "
+              "it builds and "
+              "traces slower, or is "
+              "ahead for the first rays only.",
+              draw(plot));
   }
 
   ChartList& list_;

@@ -60,6 +60,12 @@ const char* const kProbe = R"(<script>
       const box = text.getBoundingClientRect(), svg = text.ownerSVGElement.getBoundingClientRect();
       return box.left < svg.left - 2 || box.right > svg.right + 2;
     }).map(text => text.textContent),
+    texts_crossing: all('figure[id] svg').flatMap(svg => {
+      const texts = [...svg.querySelectorAll('text:not(.letter)')].map(text => [text.textContent, text.getBoundingClientRect()]);
+      return texts.flatMap(([a, p], i) => texts.slice(i + 1).filter(([b, q]) =>
+          Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1 && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 4)
+          .map(([b]) => a + ' / ' + b));
+    }),
     pictures: all('img').map(img => img.naturalWidth),
     first: state(),
     few: at(3),
@@ -125,7 +131,7 @@ std::vector<std::array<double, 2>> points_of(const std::string& page) {
 }
 
 void check_all(const json& seen) {
-  CAPTURE(seen.at("texts_outside").dump(), seen.dump(1));
+  CAPTURE(seen.at("texts_outside").dump(), seen.at("texts_crossing").dump(), seen.dump(1));
   REQUIRE(seen.at("problems").empty());
   for (const char* chart : {"pareto-accuracy", "pareto-memory", "gain", "build-trace", "break-even", "boxes",
                             "triangles", "prediction-primary", "prediction-shadow", "prediction-light",
@@ -136,6 +142,7 @@ void check_all(const json& seen) {
   }
   REQUIRE(seen.at("marks_outside") == 0);
   REQUIRE(seen.at("texts_outside").empty());
+  REQUIRE(seen.at("texts_crossing").empty());
   REQUIRE(seen.at("pictures").size() >= 2);
   for (const json& width : seen.at("pictures")) REQUIRE(width == 320);
   REQUIRE(seen.at("too_wide") <= 0);

@@ -37,12 +37,17 @@ for program in main areas; do
   "$scratch/$program"
 done
 
-echo "== every header alone, with a user's strict warnings"
+echo "== every header, and alone where no source of ours begins with it, with a user's strict warnings"
 cd "$prefix/include"
-find gnomon -name '*.h' | sort | while read -r header; do
-  "$compiler" -std=c++20 -fsyntax-only -Wall -Wextra -Werror "${compile_flags[@]}" -x c++ - <<<"#include \"$header\""
-done
-find gnomon -name '*.h' | wc -l
+accepts() { "$compiler" -std=c++20 -fsyntax-only -Wall -Wextra -Werror "${compile_flags[@]}" -x c++ -; }
+find gnomon -name '*.h' | sort >"$scratch/headers"
+sed 's/.*/#include "&"/' "$scratch/headers" | accepts
+while read -r header; do
+  source=$here/../../host/${header#gnomon/}
+  source=${source%.h}.cpp
+  [ -f "$source" ] && [ "$(grep -m1 '^#include' "$source")" = "#include \"$header\"" ] || accepts <<<"#include \"$header\""
+done <"$scratch/headers"
+wc -l <"$scratch/headers"
 
 echo "== the README shows this program"
 sed -n '/<!-- example begin -->/,/<!-- example end -->/p' "$here/../../README.md" | sed '/^<!--/d; /^```/d; /^$/d' >"$scratch/shown"

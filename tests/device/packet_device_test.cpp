@@ -46,11 +46,16 @@ TEST_CASE("packets give the other flavours' bits and the oracle's answers on bun
   }
 }
 
+// Packets are demanded here whatever the device: the entry device_test_rusticl_packets runs this test alone.
+// Others of the simulator's tests watch the other flavours.
 TEST_CASE("packets give the other flavours' bits on a small soup", "[memcheck][unlimited]") {
-  const auto triangles = soup(60, 202, 1.5F);
-  for (const auto& [name, rays] : bundles(1)) {
+  const auto tree = gnomon::build_device(context(), soup(60, 202, 1.5F));
+  for (const auto& [name, bundle] : bundles(1)) {
     CAPTURE(name);
-    require_equal_flavours(triangles, Rays(rays.begin(), rays.begin() + 24));
+    const Rays rays(bundle.begin(), bundle.begin() + 24);
+    const Traced thread = trace(tree, rays, TraceFlavour::kThread);
+    for (const bool portable : {false, true})
+      require_same_answers(thread, trace(tree, rays, TraceFlavour::kPacket, portable));
   }
 }
 

@@ -12,92 +12,18 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "gnomon/tree/trace_reference.h"
 #include "gnomon/tree/tree_export.h"
+#include "plain_tree.h"
 #include "tree_file_tools.h"
 
 using namespace gnomon;
 using namespace gnomon::test;
+using namespace gnomon::test::plain;
 
 namespace {
-
-using Vec = std::array<double, 3>;
-
-struct Box {
-  std::array<float, 3> lo, hi;
-};
-
-struct Found {
-  double t = std::numeric_limits<double>::infinity();
-  std::uint32_t primitive = GN_NONE;
-};
-
-Vec vec(const float* v) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
-}
-Vec minus(const Vec& a, const Vec& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const Vec& a, const Vec& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec cross(const Vec& a, const Vec& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-bool meets(const Box& box, const GnRay& ray) {
-  double enter = static_cast<double>(ray.tmin);
-  double leave = static_cast<double>(ray.tmax);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double inverse = 1.0 / static_cast<double>(ray.direction[k]);
-    const double a = (static_cast<double>(box.lo[k]) - static_cast<double>(ray.origin[k])) * inverse;
-    const double b = (static_cast<double>(box.hi[k]) - static_cast<double>(ray.origin[k])) * inverse;
-    enter = std::max(enter, std::min(a, b) - 1e-6);
-    leave = std::min(leave, std::max(a, b) + 1e-6);
-  }
-  return enter <= leave;
-}
-
-// Moeller and Trumbore's test in double precision; `stride` floats from corner to corner.
-void test_triangle(const float* corners, std::size_t stride, std::uint32_t primitive, const GnRay& ray,
-                   Found& found) {
-  const Vec a = vec(corners);
-  const Vec e = minus(vec(corners + stride), a);
-  const Vec f = minus(vec(corners + 2 * stride), a);
-  const Vec d = vec(ray.direction);
-  const Vec p = cross(d, f);
-  const double scale = 1.0 / dot(e, p);
-  const Vec s = minus(vec(ray.origin), a);
-  const Vec q = cross(s, e);
-  const double u = dot(s, p) * scale;
-  const double v = dot(d, q) * scale;
-  const double t = dot(f, q) * scale;
-  if (!(u >= 0.0 && v >= 0.0 && u + v <= 1.0)) return;
-  if (t < static_cast<double>(ray.tmin) || t > static_cast<double>(ray.tmax) || t >= found.t) return;
-  found = {t, primitive};
-}
-
-struct Parts {
-  const std::byte* nodes;
-  std::uint32_t node_count;
-  std::vector<std::uint32_t> indices;
-  std::vector<float> corners;  // 9 a triangle
-};
-
-Parts parts_of(const FileBytes& bytes) {
-  REQUIRE(std::memcmp(bytes.data(), "gnombvh2", 8) == 0);
-  Parts parts{bytes.data() + 32, value_at<std::uint32_t>(bytes, 12), {}, {}};
-  parts.indices.resize(value_at<std::uint32_t>(bytes, 16));
-  parts.corners.resize(9 * std::size_t{value_at<std::uint32_t>(bytes, 20)});
-  const std::byte* at = parts.nodes + 32 * std::size_t{parts.node_count};
-  REQUIRE(bytes.data() + bytes.size() == at + 4 * (parts.indices.size() + parts.corners.size()));
-  std::memcpy(parts.indices.data(), at, 4 * parts.indices.size());
-  std::memcpy(parts.corners.data(), at + 4 * parts.indices.size(), 4 * parts.corners.size());
-  return parts;
-}
 
 // tinybvh: nodes and indices as they are, corners padded to 16 bytes.
 class TinyBvh {
@@ -140,20 +66,6 @@ class TinyBvh {
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> prim_idx_;
   std::vector<float> verts_;
-};
-
-// A node of the file, for importers that make their own.
-struct Plain {
-  Box box;
-  std::uint32_t left_first, count;
-  Plain(const Parts& parts, std::uint32_t node) {
-    REQUIRE(node < parts.node_count);
-    const std::byte* at = parts.nodes + 32 * std::size_t{node};
-    std::memcpy(box.lo.data(), at, 12);
-    std::memcpy(&left_first, at + 12, 4);
-    std::memcpy(box.hi.data(), at + 16, 12);
-    std::memcpy(&count, at + 28, 4);
-  }
 };
 
 // Embree: the callbacks that a builder calls, called by a walk over the file's nodes.

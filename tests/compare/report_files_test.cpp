@@ -1,0 +1,120 @@
+// A report as files: JSON, rows and CSV, written and read again.
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "gnomon/base/error.h"
+#include "gnomon/compare/base64.h"
+#include "gnomon/compare/page.h"
+#include "gnomon/compare/report_json.h"
+#include "support/sample_report.h"
+#include "support/text.h"
+
+using namespace gnomon::compare;
+using Catch::Contains;
+using gnomon::compare::test::sample_report;
+using gnomon::test::count_of;
+
+TEST_CASE("the same report gives the same bytes, another report others") {
+  const Report report = sample_report();
+  CHECK(report_page(report) == report_page(sample_report()));
+  CHECK(to_json_text(report) == to_json_text(sample_report()));
+  Report other = report;
+  other.devices[0].builds[1].rounds.wall_s[0] = 0.625;
+  CHECK(report_page(other) != report_page(report));
+}
+
+TEST_CASE("a report comes back from its JSON as it was, and draws the same page") {
+  const Report report = sample_report();
+  const Report back = from_json_text(to_json_text(report), "there");
+  CHECK(back == report);
+  CHECK(report_page(back) == report_page(report));
+  CHECK(to_csv(back) == to_csv(report));
+}
+
+TEST_CASE("each row of the JSON stands by itself") {
+  const auto document = nlohmann::json::parse(to_json_text(sample_report()));
+  CHECK(document.at("schema") == kSchema);
+  std::set<std::string> names;
+  for (const auto& row : document.at("devices").at(0).at("rows")) {
+    CAPTURE(row.dump());
+    for (const char* field : {"schema", "bench", "task", "name", "commit", "device", "driver", "scene",
+                              "scene_hash", "triangles", "method"})
+      REQUIRE(row.contains(field));
+    REQUIRE(names.insert(row.at("name")).second);  // a name is one row's
+    if (row.at("task") != "trace" || row.at("method") != "sah-best" || row.at("rays") != "primary") continue;
+    REQUIRE(row.at("real_time") == 1e6);  // 1 s for 1000 rays, in ns
+  }
+  CHECK(names.size() == 4 * (1 + 2 + 2) + 3 * 2 + 4 + 3 + 1 + 1);
+}
+
+TEST_CASE("a report comes back from its rows, but for pictures and what a rerun needs") {
+  Report report = sample_report();
+  Report other = report;
+  other.command = "another";
+  const auto back = from_rows_text(to_rows_text(report) + to_rows_text(other), "there");
+  REQUIRE(back.size() == 2);
+  report.devices[0].pictures = other.devices[0].pictures = {};
+  report.devices[0].done = other.devices[0].done = {};
+  CHECK(back[0] == report);
+  CHECK(back[1] == other);
+  for (const char* text : {"{", R"({"bench": "spine", "schema": 1})",
+                           R"({"bench": "compare", "schema": 1, "task": "build", "method": "m"})"}) {
+    CAPTURE(text);
+    REQUIRE_THROWS_WITH(from_rows_text(text, "old.jsonl"), Contains("old.jsonl, line 1"));
+  }
+}
+
+TEST_CASE("a row's ratio is of the same round, the baseline's over its own") {
+  std::size_t seen = 0;
+  std::istringstream lines(to_rows_text(sample_report()));
+  for (std::string line; std::getline(lines, line);) {
+    const auto row = nlohmann::json::parse(line);
+    CAPTURE(line);
+    if (row.at("task") == "build" && row.at("method") == "sah-best") {
+      REQUIRE(row.at("ratio") == nlohmann::json{{"median", 0.25}, {"min", 0.25}, {"max", 0.25}, {"n", 3}});
+      ++seen;
+    }
+    if (row.at("task") == "trace" && row.at("method") == "sah-best" && row.at("rays") == "bounce") {
+      REQUIRE(row.at("ratio") == nlohmann::json{{"median", 2.0}, {"min", 1.6}, {"max", 2.0}, {"n", 3}});
+      ++seen;
+    }
+    if (row.at("task") == "size" && row.at("method") == "sah-fast") {
+      REQUIRE(row.at("build_ratio").at("median") == 2.0);
+      REQUIRE(row.at("trace_ratio").at("median") == 1.0);
+      ++seen;
+    }
+  }
+  CHECK(seen == 4);
+}
+
+TEST_CASE("a text that is no report is refused with its name and what to do") {
+  for (const char* text :
+       {"", "{", "[]", "{}", R"({"bench": "spine", "schema": 1})", R"({"bench": "compare", "schema": 2})"}) {
+    CAPTURE(text);
+    REQUIRE_THROWS_WITH(from_json_text(text, "old.json"),
+                        Contains("old.json") && Contains("another name with -o"));
+  }
+}
+
+TEST_CASE("the CSV has a line for each method and kind, with as many cells as the head") {
+  const std::string csv = to_csv(sample_report());
+  CHECK(count_of(csv, "\n") == 1 + 4 * 2);
+  std::size_t commas = 0;
+  for (std::size_t at = 0; at < csv.size();) {
+    const std::size_t end = csv.find('\n', at);
+    const std::size_t here = count_of(csv.substr(at, end - at), ",");
+    if (at == 0) commas = here;
+    CAPTURE(csv.substr(at, end - at));
+    REQUIRE(here == commas);
+    at = end + 1;
+  }
+}
+
+TEST_CASE("bytes come back from base64") {
+  for (const std::string& bytes :
+       {std::string(), std::string("\0", 1), std::string("\xff\x00\x7f", 3), std::string("four")})
+    CHECK(from_base64(to_base64(bytes)) == bytes);
+  CHECK(to_base64("any carnal pleas") == "YW55IGNhcm5hbCBwbGVhcw==");
+  CHECK_THROWS_AS(from_base64("AA*A"), gnomon::Error);
+}

@@ -206,6 +206,7 @@ OptimiseOptions thorough() {
   OptimiseOptions options;
   options.share = 0.25F;
   options.max_passes = 12;
+  options.leave_settled = true;
   return options;
 }
 

@@ -165,6 +165,13 @@ GN_INLINE GnMove gn_find_move(GN_GLOBAL const GnNode* slots, GN_GLOBAL const gn_
   return move;
 }
 
+// The pair around which a node was left where it is: changes outside of what is below its grandparent do not have it
+// searched for again.
+GN_INLINE gn_u32 gn_pair_near(GN_GLOBAL const gn_u32* above, gn_u32 node) {
+  const gn_u32 parent = above[node >> 1];
+  return parent == GN_ROOT_SLOT ? node >> 1 : parent >> 1;
+}
+
 // The slots a move changes or relies on: the node's own, its parent's, its sibling's, the target's.
 GN_INLINE gn_u32 gn_claimed_slot(const GnMove* move, gn_u32 i) {
   return i == 0u ? move->node : i == 1u ? move->node ^ 1u : i == 2u ? move->parent : move->target;

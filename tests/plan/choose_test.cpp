@@ -106,7 +106,9 @@ TEST_CASE("rays that nothing can be done for keep the baseline") {
   const Scene soup = gnomon::generate_scene("random", 3000, 1);
   const std::vector<PlanRays> rays{{"random", Query::kEvery, gnomon::random_rays(soup, 512, 1),
                                     gnomon::random_rays(soup, 1024, 2), kMany}};
-  const Plan plan = gnomon::make_plan(soup.triangles, rays);
+  PlanOptions options;
+  options.sample_share = 1.0;  // enough to look for moves in
+  const Plan plan = gnomon::make_plan(soup.triangles, rays, options);
   CAPTURE(to_json(plan));
   REQUIRE(plan.decisions[0].kept == "sah");
   REQUIRE_THAT(plan.decisions[0].reason, Catch::Contains("no candidate"));

@@ -59,7 +59,7 @@ class Entrant {
  public:
   Entrant(const cl::Context& context, std::string name, OrderedTree tree, std::span<const Triangle> triangles)
       : name_(std::move(name)), tree_(std::move(tree)), device_(upload_bvh(context, tree_.bvh, triangles)) {
-    wide_ = collapse_device(context, device_, {}, nullptr, tree_.ranks);
+    wide_ = collapse_device(context, device_, {}, nullptr, tree_.ranks, tree_.weights);
     tracer_ = std::make_unique<Tracer>(context, wide_);
     TraceOptions counting;
     counting.counters = true;

@@ -1,7 +1,8 @@
 // From the binary tree to the wide one (shared/wide_layout.h): cuts the tree into subtrees, works out from the leaves up
 // what collapsing them costs, then writes wide nodes and triangle blocks from the root down. A wide node's children
 // that are nodes lie side by side, what is below them follows child by child: numbers depend on the tree alone, not
-// on the cuts. One work-item a subtree throughout. slot_keys: one a node of the binary tree, where keys_given. Options: GN_COLLAPSE_DEPTH, above the binary tree's depth.
+// on the cuts. One work-item a subtree throughout. weights, slot_keys: one a node of the binary tree, where they
+// are given. Options: GN_COLLAPSE_DEPTH, above the binary tree's depth.
 #include "ahead.h"
 #include "children_first.h"
 #include "shared/collapse_math.h"
@@ -57,11 +58,11 @@ __kernel void cut_binary(__global const GnNode* nodes, uint inner_count, uint li
 
 // gn_forest_of's costs as a vector, the last lane anything; its triangles are added to *triangles.
 static inline float8 forest_vector(__global const GnNode* nodes, __global const GnForest* forests, uint node,
-                                   float block_cost, uint* triangles) {
+                                   const GnNodeValues* weights, float block_cost, uint* triangles) {
   const uint count = nodes[node].count;
   if (count > 0u) {
     *triangles += count;
-    return (float8)(gn_wide_leaf_cost(gn_half_area(nodes + node), count, block_cost));
+    return (float8)(gn_wide_leaf_cost(gn_node_value(nodes, node, weights), count, block_cost));
   }
   *triangles += forests[(nodes[node].first - 1u) / 2u].triangles;
   return vload8((nodes[node].first - 1u) / 2u, (__global const float*)forests);
@@ -69,13 +70,13 @@ static inline float8 forest_vector(__global const GnNode* nodes, __global const 
 
 // gn_inner_forest on vectors: the same sums and minima, those of all budgets at once. Compilers leave its loops loops.
 static inline void join_children(__global const GnNode* nodes, __global GnForest* forests, uint node,
-                                 GnCollapseCosts costs) {
+                                 const GnNodeValues* weights, GnCollapseCosts costs) {
   const uint first = nodes[node].first;
   uint triangles = 0u;
-  const float8 l = forest_vector(nodes, forests, first, costs.block, &triangles);
-  const float8 r = forest_vector(nodes, forests, first + 1u, costs.block, &triangles);
+  const float8 l = forest_vector(nodes, forests, first, weights, costs.block, &triangles);
+  const float8 r = forest_vector(nodes, forests, first + 1u, weights, costs.block, &triangles);
   const float none = INFINITY;
-  const float area = gn_half_area(nodes + node);
+  const float area = gn_node_value(nodes, node, weights);
   float8 out;
   // Lane i: the least of all divisions of i + 2 children, of which the left one gets 1, 2, ...
   float8 least = l.s0 + r;
@@ -100,19 +101,23 @@ static inline void join_children(__global const GnNode* nodes, __global GnForest
 
 // Forests of the inner nodes of one subtree per work-item, children before parents.
 __kernel void weigh_subtrees(__global const GnNode* nodes, __global GnForest* forests, __global const uint* tasks,
-                             uint task_count, float node_cost, float block_cost) {
+                             uint task_count, float node_cost, float block_cost, __global const float* node_weights,
+                             uint weights_given) {
+  const GnNodeValues weights = {node_weights, weights_given};
   const uint task = (uint)get_global_id(0);
   const GnCollapseCosts costs = {node_cost, block_cost};
   if (task >= task_count) return;
-  GN_CHILDREN_FIRST(nodes, tasks[task], join_children(nodes, forests, node, costs))
+  GN_CHILDREN_FIRST(nodes, tasks[task], join_children(nodes, forests, node, &weights, costs))
 }
 
 // One work-item: forests of the nodes above the subtrees, from the last found to the root.
 __kernel void weigh_top(__global const GnNode* nodes, __global GnForest* forests, __global const uint* top,
-                        uint top_count, float node_cost, float block_cost) {
+                        uint top_count, float node_cost, float block_cost, __global const float* node_weights,
+                        uint weights_given) {
+  const GnNodeValues weights = {node_weights, weights_given};
   const GnCollapseCosts costs = {node_cost, block_cost};
   uint i;
-  for (i = top_count; i > 0u; --i) join_children(nodes, forests, top[i - 1u], costs);
+  for (i = top_count; i > 0u; --i) join_children(nodes, forests, top[i - 1u], &weights, costs);
 }
 
 typedef struct GnTree {
@@ -122,7 +127,8 @@ typedef struct GnTree {
   __global GnWideNode* wide_nodes;
   __global GnTriangleBlock* blocks;
   GnCollapseCosts costs;
-  GnSlotKeys keys;
+  GnNodeValues weights;
+  GnNodeValues keys;
 } GnTree;
 
 // Wide nodes not yet written, their numbers, and the next free numbers below them.
@@ -197,7 +203,8 @@ static inline void emit_node(const GnTree* tree, GnEmission* work, int write) {
   const uint depth = work->depths[top] + 1u;
   __global GnWideNode* out = tree->wide_nodes + work->places[top];
   uint slot, inner = 0u, entered = 0u;
-  gn_open_wide_node(tree->nodes, tree->forests, work->roots[top], tree->costs, &tree->keys, &slots);
+  gn_open_wide_node(tree->nodes, tree->forests, work->roots[top], tree->costs, &tree->weights, &tree->keys,
+                    &slots);
   for (slot = 0u; slot < slots.count; ++slot) inner += slots.triangles[slot] == 0u;
   if (write) write_empty_node(out);
   for (slot = 0u; slot < slots.count; ++slot) {
@@ -239,7 +246,7 @@ static inline void start_emission(GnEmission* work, uint root, uint place, uint 
 }
 
 static inline uint triangles_below(const GnTree* tree, uint node) {
-  return gn_forest_of(tree->nodes, tree->forests, node, tree->costs.block).triangles;
+  return gn_forest_of(tree->nodes, tree->forests, node, &tree->weights, tree->costs.block).triangles;
 }
 
 // What the wide nodes of a subtree are made from: its splits have neighbouring ranks, its triangles neighbouring places.
@@ -266,9 +273,9 @@ static inline void expect_subtree(const GnTree* tree, uint root, int triangles) 
 #define GN_TREE_PARAMETERS                                                                                         \
   __global const GnNode *nodes, __global const GnForest *forests, __global const GnLeafTriangle *triangles,         \
       __global GnWideNode *wide_nodes, __global GnTriangleBlock *blocks, float node_cost, float block_cost,                   \
-      __global const float *slot_keys, uint keys_given
+      __global const float *node_weights, uint weights_given, __global const float *slot_keys, uint keys_given
 #define GN_TREE \
-  {nodes, forests, triangles, wide_nodes, blocks, {node_cost, block_cost}, {slot_keys, keys_given}}
+  {nodes, forests, triangles, wide_nodes, blocks, {node_cost, block_cost}, {node_weights, weights_given}, {slot_keys, keys_given}}
 
 // One work-item, twice. Goes through the wide nodes above subtrees of at most `limit` triangles. First (write == 0) it
 // lists those subtrees; then, knowing what each holds, it writes the nodes above and tells each where to write.

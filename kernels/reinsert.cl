@@ -99,7 +99,7 @@ static inline GnBelow below_of(__global const GnNode* slots, __global const GnBe
   out.inner = 0u;
   out.triangles = slots[slot].count;
   out.height = 0u;
-  out.pad = 0u;
+  out.changed = 0u;
   return out;
 }
 
@@ -115,7 +115,8 @@ static inline void join_pair(__global GnNode* slots, __global GnBelow* below, ui
   below[first >> 1].inner = left.inner + right.inner + 1u;
   below[first >> 1].triangles = left.triangles + right.triangles;
   below[first >> 1].height = max(left.height, right.height) + 1u;
-  below[first >> 1].pad = 0u;
+  below[first >> 1].changed =
+      (below[first >> 1].changed == GN_RELINKED) | (left.changed != 0u) | (right.changed != 0u);
 }
 
 // Inner nodes of one subtree per work-item, children before parents. The way back up is in `above`: no stack, however
@@ -146,9 +147,10 @@ __kernel void join_top(__global GnNode* slots, __global GnBelow* below, __global
 }
 
 // One work-item per run of slots: puts the costs of all nodes but the root in bins, counts these, and adds the costs of
-// inner nodes up.
-__kernel void weigh_slots(__global const GnNode* slots, __global ushort* cost_bins, volatile __global uint* bins,
-                          __global ulong* sums, float wx, float wy, float wz, float units, uint count, uint run) {
+// inner nodes up. Nodes near which something moved are settled no more.
+__kernel void weigh_slots(__global const GnNode* slots, __global const uint* above, __global const GnBelow* below,
+                          __global ushort* cost_bins, volatile __global uint* bins, __global ulong* sums, float wx,
+                          float wy, float wz, float units, uint count, uint run) {
   const uint chunk = (uint)get_global_id(0);
   const uint begin = GN_ROOT_SLOT + chunk * run;
   const GnFaces faces = {{wx, wy, wz}};
@@ -158,30 +160,38 @@ __kernel void weigh_slots(__global const GnNode* slots, __global ushort* cost_bi
   for (i = begin; i <= count && i < begin + run; ++i) {
     const float cost = gn_slot_cost(&faces, slots + i);
     const uint bin = gn_cost_bin(cost);
-    cost_bins[i] = (ushort)bin;
+    const uint settled = cost_bins[i] & GN_SETTLED;
+    const uint stays = settled && !below[gn_pair_near(above, i)].changed;
+    cost_bins[i] = (ushort)(stays ? bin | GN_SETTLED : bin);
     if (i != GN_ROOT_SLOT) atomic_inc(bins + bin);
     if (slots[i].count == 0u) sum += gn_cost_units(cost, units);
   }
   sums[chunk] = sum;
 }
 
-// One work-item per run of slots: those of nodes whose costs are in bins from `floor` on, in any order.
+// One work-item per run of slots: those of nodes whose costs are in bins from `floor` on and that are not settled, in any
+// order.
 __kernel void list_candidates(__global const ushort* cost_bins, __global uint* candidates,
                               volatile __global uint* length, uint floor, uint count, uint run) {
   const uint begin = GN_ROOT_SLOT + (uint)get_global_id(0) * run;
   uint i;
   for (i = begin; i <= count && i < begin + run; ++i) {
-    if (i != GN_ROOT_SLOT && cost_bins[i] >= floor) candidates[atomic_inc(length)] = i;
+    if (i != GN_ROOT_SLOT && cost_bins[i] >= floor && cost_bins[i] < GN_SETTLED) candidates[atomic_inc(length)] = i;
   }
 }
 
-// One work-item per run of candidates.
+// One work-item per run of candidates. leave: those that stay are settled.
 __kernel void find_moves(__global const GnNode* slots, __global const uint* above, __global const uint* candidates,
-                         __global GnMove* moves, float wx, float wy, float wz, uint count, uint run) {
+                         __global GnMove* moves, __global ushort* cost_bins, float wx, float wy, float wz, uint leave,
+                         uint count, uint run) {
   const uint begin = (uint)get_global_id(0) * run;
   const GnFaces faces = {{wx, wy, wz}};
   uint i;
-  for (i = begin; i < count && i < begin + run; ++i) moves[i] = gn_find_move(slots, above, &faces, candidates[i]);
+  for (i = begin; i < count && i < begin + run; ++i) {
+    const GnMove move = gn_find_move(slots, above, &faces, candidates[i]);
+    if (leave && move.target == GN_NONE) cost_bins[move.node] |= (ushort)GN_SETTLED;
+    moves[i] = move;
+  }
 }
 
 // One work-item per move: bids its gain for the slots it needs.
@@ -258,7 +268,8 @@ static inline void put_parent(__global GnNode* slots, __global uint* above, uint
 
 // One work-item per move. The sibling takes the parent's place, the target the sibling's, and a new parent of node and
 // target the target's: the node itself stays in its slot.
-__kernel void make_moves(__global GnNode* slots, __global uint* above, __global const GnMove* moves, uint count) {
+__kernel void make_moves(__global GnNode* slots, __global uint* above, __global GnBelow* below,
+                         __global const GnMove* moves, uint count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count || moves[i].made == 0u) return;
   {
@@ -267,6 +278,9 @@ __kernel void make_moves(__global GnNode* slots, __global uint* above, __global 
     put_node(slots, above, move.parent, &sibling);
     put_node(slots, above, move.node ^ 1u, &target);
     put_parent(slots, above, move.target, move.node & ~1u);
+    below[move.parent >> 1].changed = GN_RELINKED;
+    below[move.node >> 1].changed = GN_RELINKED;
+    below[move.target >> 1].changed = GN_RELINKED;
   }
 }
 

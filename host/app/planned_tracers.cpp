@@ -21,13 +21,14 @@ PlannedTracers::Ready PlannedTracers::ready(const cl::Context& context, const Sc
     return out;
   }
   out.own = std::make_unique<DeviceBvh>(upload_bvh(context, kept->tree.bvh, scene.triangles));
-  // The binary tree has no slots for an order to be of.
-  if (kept->tree.ranks.empty() || !has_slots(context.device(), TraceFlavour::kAuto)) {
+  // The binary tree has no slots for an order to be of, and is not collapsed.
+  if ((kept->tree.ranks.empty() && kept->tree.weights.empty()) ||
+      !has_slots(context.device(), TraceFlavour::kAuto)) {
     out.tracer = std::make_unique<Tracer>(context, *out.own);
     return out;
   }
-  out.wide =
-      std::make_unique<DeviceWideBvh>(collapse_device(context, *out.own, {}, nullptr, kept->tree.ranks));
+  out.wide = std::make_unique<DeviceWideBvh>(
+      collapse_device(context, *out.own, {}, nullptr, kept->tree.ranks, kept->tree.weights));
   out.tracer = std::make_unique<Tracer>(context, *out.wide);
   return out;
 }

@@ -193,12 +193,16 @@ int run(const Options& options, Console& console) {
   const PlanOutcome planned = plan_for(options.plan, task, console.progress());
   stop_if_interrupted();
   std::span<const float> ranks;
+  std::span<const float> weights;
   if (const PlanTree* const kept = planned.tree(0)) {
     adopt(build, task, *kept);
-    if (has_slots(context.device(), how_to_trace(options).flavour)) ranks = kept->tree.ranks;
+    if (has_slots(context.device(), how_to_trace(options).flavour)) {
+      ranks = kept->tree.ranks;
+      weights = kept->tree.weights;
+    }
   }
   const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, how_to_trace(options),
-                                       options.repeat, console.progress(), ranks);
+                                       options.repeat, console.progress(), ranks, weights);
   stop_if_interrupted();
   if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
   if (!options.hits_out.empty()) write_hits(options.hits_out, trace.hits);

@@ -35,12 +35,13 @@ void count_work(TimedTrace& timed, const TraceResult& counted) {
 
 TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::span<const Ray> rays,
                        bool any_hit, const TraceOptions& how, std::uint64_t repeat, const Progress& progress,
-                       std::span<const float> slot_keys) {
+                       std::span<const float> slot_keys, std::span<const float> weights) {
   TraceOptions options = how;
-  const DeviceWideBvh keyed =
-      slot_keys.empty() ? DeviceWideBvh{} : collapse_device(context, tree, {}, nullptr, slot_keys);
+  const bool own = !slot_keys.empty() || !weights.empty();
+  const DeviceWideBvh collapsed =
+      own ? collapse_device(context, tree, {}, nullptr, slot_keys, weights) : DeviceWideBvh{};
   const auto tracer_of = [&] {
-    return slot_keys.empty() ? Tracer(context, tree, options) : Tracer(context, keyed, options);
+    return own ? Tracer(context, collapsed, options) : Tracer(context, tree, options);
   };
   const Tracer tracer = tracer_of();
   TimedTrace timed;

@@ -31,6 +31,7 @@ struct TimedTrace {
 [[nodiscard]] TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree,
                                      std::span<const Ray> rays, bool any_hit, const TraceOptions& how,
                                      std::uint64_t repeat, const Progress& progress,
-                                     std::span<const float> slot_keys = {});
+                                     std::span<const float> slot_keys = {},
+                                     std::span<const float> weights = {});
 
 }  // namespace gnomon::app

@@ -28,7 +28,7 @@ class PlanEntrant : public Entrant {
     plan_ = make_plan(scene_.triangles, rays, {}, builder_, progress);
     for (const PlanTree& kept : plan_.trees)
       trees_.emplace_back(context_, upload_bvh(context_, kept.tree.bvh, scene_.triangles),
-                          TracedTree::Options{}, kept.tree.ranks);
+                          TracedTree::Options{}, kept.tree.ranks, nullptr, kept.tree.weights);
   }
 
   void trace(const Batch& batch) override { tree_of(batch.kind).trace(batch); }

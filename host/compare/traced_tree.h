@@ -22,10 +22,11 @@ class TracedTree {
     bool portable = false;  // OpenCL C alone, without the device compiler's own instructions
   };
 
-  // slot_keys: of the wide tree's slots (gnomon/tree/wide.h). Collapsing's stages go to `report`. The context
+  // slot_keys, weights: for the wide tree (gnomon/tree/wide.h). Collapsing's stages go to `report`. The context
   // must outlive it. Throws Error as collapse_device and Tracer do.
   TracedTree(const cl::Context& context, DeviceBvh tree, const Options& options,
-             std::span<const float> slot_keys = {}, BuildReport* report = nullptr);
+             std::span<const float> slot_keys = {}, BuildReport* report = nullptr,
+             std::span<const float> weights = {});
 
   void trace(const Batch& batch) const;
   [[nodiscard]] Answers answers(const Batch& batch) const;

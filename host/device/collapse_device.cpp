@@ -34,16 +34,20 @@ void heed_loop_limit(const cl::DeviceInfo& device, std::uint32_t triangles) {
 class Collapser {
  public:
   Collapser(const cl::Context& context, const DeviceBvh& tree, const CollapseOptions& options,
-            std::span<const float> slot_keys)
-      : context_(context), tree_(tree), options_(options), keys_given_(slot_keys.empty() ? 0 : 1) {
+            std::span<const float> slot_keys, std::span<const float> weights)
+      : context_(context),
+        tree_(tree),
+        options_(options),
+        weights_given_(weights.empty() ? 0 : 1),
+        keys_given_(slot_keys.empty() ? 0 : 1) {
     inner_count_ = tree.node_count / 2;
     limit_ = options.triangles_per_task != 0 ? options.triangles_per_task
                                              : triangles_per_task(context.device(), tree.triangle_count);
     numbers_ = context.create_buffer("collapse_numbers", 5 * sizeof(std::uint32_t));
     forests_ = context.create_buffer("collapse_forests", inner_count_ * sizeof(GnForest));
     no_nodes_ = context.create_buffer("no_wide_nodes", 1);
-    keys_ = context.create_buffer("slot_keys", std::max<std::size_t>(1, slot_keys.size()) * sizeof(float));
-    if (keys_given_ != 0) context.upload_values<float>(keys_, slot_keys);
+    weights_ = uploaded("node_weights", weights);
+    keys_ = uploaded("slot_keys", slot_keys);
   }
 
   DeviceWideBvh run() {
@@ -54,6 +58,12 @@ class Collapser {
   [[nodiscard]] const cl::StageTimes& times() const { return times_; }
 
  private:
+  [[nodiscard]] cl::Buffer uploaded(const char* name, std::span<const float> values) const {
+    cl::Buffer buffer = context_.create_buffer(name, std::max<std::size_t>(1, values.size()) * sizeof(float));
+    if (!values.empty()) context_.upload_values<float>(buffer, values);
+    return buffer;
+  }
+
   template <typename... Arguments>
   void launch(const char* stage, const char* name, std::uint32_t items, const Arguments&... arguments) {
     if (items == 0) return;
@@ -80,9 +90,9 @@ class Collapser {
     launch("collapse: weigh", "cut_binary", 1, tree_.nodes, inner_count_, limit, tasks, top, numbers_);
     const auto found = numbers();
     launch("collapse: weigh", "weigh_subtrees", found[0], tree_.nodes, forests_, tasks, found[0],
-           options_.cost_node, options_.cost_block);
+           options_.cost_node, options_.cost_block, weights_, weights_given_);
     launch("collapse: weigh", "weigh_top", 1, tree_.nodes, forests_, top, found[1], options_.cost_node,
-           options_.cost_block);
+           options_.cost_block, weights_, weights_given_);
   }
 
   DeviceWideBvh emit() {
@@ -92,14 +102,14 @@ class Collapser {
     top(no_nodes_, no_nodes_, tasks, 0);
     const std::uint32_t task_count = numbers()[0];
     launch("collapse: count", "count_subtrees", task_count, tree_.nodes, forests_, tree_.leaf_triangles,
-           no_nodes_, no_nodes_, options_.cost_node, options_.cost_block, keys_, keys_given_, tasks,
+           no_nodes_, no_nodes_, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_, keys_given_, tasks,
            task_count);
     DeviceWideBvh wide = allocate(tasks, task_count);
     top(wide.nodes, wide.blocks, tasks, 1);
     const cl::Buffer depth = context_.create_buffer("collapse_depth", sizeof(std::uint32_t));
     context_.fill(depth, 0);
     launch("collapse: emit", "emit_subtrees", task_count, tree_.nodes, forests_, tree_.leaf_triangles,
-           wide.nodes, wide.blocks, options_.cost_node, options_.cost_block, keys_, keys_given_, tasks,
+           wide.nodes, wide.blocks, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_, keys_given_, tasks,
            task_count, depth);
     wide.depth = std::max(numbers()[4], context_.download_values<std::uint32_t>(depth, 1).front());
     return wide;
@@ -107,7 +117,7 @@ class Collapser {
 
   void top(const cl::Buffer& nodes, const cl::Buffer& blocks, const cl::Buffer& tasks, std::uint32_t write) {
     launch("collapse: top", "emit_top", 1, tree_.nodes, forests_, tree_.leaf_triangles, nodes, blocks,
-           options_.cost_node, options_.cost_block, keys_, keys_given_, tasks, limit_, numbers_, write);
+           options_.cost_node, options_.cost_block, weights_, weights_given_, keys_, keys_given_, tasks, limit_, numbers_, write);
   }
 
   // The nodes and blocks that the top and all subtrees have together.
@@ -136,21 +146,23 @@ class Collapser {
   const cl::Context& context_;
   const DeviceBvh& tree_;
   const CollapseOptions& options_;
+  std::uint32_t weights_given_;
   std::uint32_t keys_given_;
   std::uint32_t inner_count_ = 0;
   std::uint32_t limit_ = 0;
   cl::StageTimes times_;
-  cl::Buffer numbers_, forests_, no_nodes_, keys_;
+  cl::Buffer numbers_, forests_, no_nodes_, weights_, keys_;
 };
 
 }  // namespace
 
 DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
                               const CollapseOptions& options, BuildReport* out,
-                              std::span<const float> slot_keys) {
+                              std::span<const float> slot_keys, std::span<const float> weights) {
   const auto start = std::chrono::steady_clock::now();
   options.check();
   check_slot_keys(slot_keys, tree.node_count);
+  check_node_weights(weights, tree.node_count);
   heed_loop_limit(context.device(), tree.triangle_count);
   if (tree.triangle_count == 0) {
     const WideBvh empty = collapse_reference({}, {}, options);
@@ -162,7 +174,7 @@ DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
     context.upload_values<WideNode>(wide.nodes, empty.nodes);
     return wide;
   }
-  Collapser collapser(context, tree, options, slot_keys);
+  Collapser collapser(context, tree, options, slot_keys, weights);
   DeviceWideBvh wide = collapser.run();
   if (out != nullptr) {
     for (auto& stage : collapser.times().milliseconds()) out->stages.push_back(std::move(stage));

@@ -27,7 +27,8 @@ struct DeviceWideBvh {
 [[nodiscard]] DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
                                             const CollapseOptions& options = {},
                                             BuildReport* report = nullptr,
-                                            std::span<const float> slot_keys = {});
+                                            std::span<const float> slot_keys = {},
+                                            std::span<const float> weights = {});
 
 // Copies a wide tree to the host.
 [[nodiscard]] WideBvh download_wide(const cl::Context& context, const DeviceWideBvh& tree);

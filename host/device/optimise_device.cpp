@@ -43,6 +43,7 @@ class Optimiser {
     for (const BufferNeed& need : optimise_memory(nodes_))
       *all[next++] = context.create_buffer(need.name, static_cast<std::size_t>(need.bytes));
     launch_light("load", "load_slots", nodes_, tree.nodes, tree.order, slots_, above_, nodes_);
+    for (const cl::Buffer* marks : {&below_, &cost_bins_}) context_.fill(*marks, 0);
   }
 
   DeviceBvh run() {
@@ -62,7 +63,7 @@ class Optimiser {
     join();
     const std::uint32_t chunks = runs_of(nodes_, slot_run_);
     context_.fill(bins_, 0);
-    launch("weigh", "weigh_slots", chunks, slots_, cost_bins_, bins_, sums_, w(0), w(1), w(2), units_, nodes_,
+    launch("weigh", "weigh_slots", chunks, slots_, above_, below_, cost_bins_, bins_, sums_, w(0), w(1), w(2), units_, nodes_,
            slot_run_);
     TreeWeight weight;
     weight.bins = context_.download_values<std::uint32_t>(bins_, GN_MEASURE_BINS);
@@ -77,15 +78,16 @@ class Optimiser {
     launch("list", "list_candidates", runs_of(nodes_, slot_run_), cost_bins_, candidates_, length_, floor,
            nodes_, slot_run_);
     count_ = context_.download_values<std::uint32_t>(length_, 1).front();
+    if (count_ == 0) return 0;
     moves_ = context_.create_buffer("moves", count_ * sizeof(GnMove));
-    launch("search", "find_moves", runs_of(count_, candidate_run_), slots_, above_, candidates_, moves_, w(0),
-           w(1), w(2), count_, candidate_run_);
+    launch("search", "find_moves", runs_of(count_, candidate_run_), slots_, above_, candidates_, moves_,
+           cost_bins_, w(0), w(1), w(2), std::uint32_t{options_.leave_settled}, count_, candidate_run_);
     for (const cl::Buffer* claims : {&gains_, &owners_, &moving_, &length_}) context_.fill(*claims, 0);
     launch_light("settle", "bid_gains", count_, moves_, gains_, count_);
     launch_light("settle", "bid_slots", count_, moves_, gains_, owners_, count_);
     launch_light("settle", "enter_winners", count_, moves_, gains_, owners_, moving_, count_);
     launch_light("settle", "give_way", count_, moves_, above_, moving_, length_, count_);
-    launch_light("move", "make_moves", count_, slots_, above_, moves_, count_);
+    launch_light("move", "make_moves", count_, slots_, above_, below_, moves_, count_);
     joined_ = false;
     return context_.download_values<std::uint32_t>(length_, 1).front();
   }

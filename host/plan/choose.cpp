@@ -92,7 +92,7 @@ class Chooser {
       return;
     }
     limit_probes();
-    const double hope = kMostSaved * pool_.expected_cost() * rays_.expected;
+    const double hope = kMostSaved * options_.prices.saved * pool_.expected_cost() * rays_.expected;
     double cheapest = INFINITY;
     for (const char* const name : {"sah-rays", "sah-order"}) {
       if (name == std::string("sah-order") && rays_.query != Query::kAny) continue;
@@ -103,7 +103,7 @@ class Chooser {
     if (!decision_.trials.empty()) return;
     decision_.reason = number(rays_.expected, 0) + " rays cannot repay another tree: the cheapest costs " +
                        number(cheapest, 0) + " units, all they do on the baseline about " +
-                       number(hope / kMostSaved, 0);
+                       number(hope / (kMostSaved * options_.prices.saved), 0);
   }
 
   // As many as the share of the baseline's build that probing may take pays for.
@@ -130,7 +130,8 @@ class Chooser {
     } else {
       const Race race = run_race(candidate.tree.tree);
       trial.standing = race.standings[0];
-      trial.saving = rays_.expected * (trial.standing.baseline - trial.standing.cost);
+      trial.saving =
+          options_.prices.saved * rays_.expected * (trial.standing.baseline - trial.standing.cost);
       const bool better = trial.standing.verdict == Verdict::kBetter;
       kept = better && trial.saving > trial.price;
       explain(race, trial, better, kept);
@@ -206,6 +207,7 @@ OptimiseOptions thorough() {
   OptimiseOptions options;
   options.share = 0.25F;
   options.max_passes = 12;
+  options.leave_settled = true;
   return options;
 }
 
@@ -228,7 +230,7 @@ void PlanOptions::check() const {
             "of finite numbers >= 0");
   race.check();
   for (const double price : {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish,
-                             prices.learn, prices.trace, prices.byte})
+                             prices.learn, prices.trace, prices.byte, prices.saved})
     require(price >= 0.0 && std::isfinite(price), "prices", std::to_string(price), "of finite numbers >= 0");
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "gnomon/base/error.h"
 
@@ -21,9 +22,12 @@ void require(bool ok, const char* name, double value, const char* range) {
 }  // namespace
 
 void OutlookOptions::check() const {
-  require(baseline_price >= 0.0 && std::isfinite(baseline_price), "baseline_price", baseline_price,
-          "of finite numbers >= 0");
-  require(kind_price >= 0.0 && std::isfinite(kind_price), "kind_price", kind_price, "of finite numbers >= 0");
+  const std::pair<const char*, double> prices[] = {{"baseline_start", baseline_start},
+                                                   {"baseline_price", baseline_price},
+                                                   {"kind_start", kind_start},
+                                                   {"kind_price", kind_price}};
+  for (const auto& [name, price] : prices)
+    require(price >= 0.0 && std::isfinite(price), name, price, "of finite numbers >= 0");
   require(most_share > 0.0 && most_share <= 1.0, "most_share", most_share, "(0, 1]");
 }
 
@@ -33,11 +37,11 @@ Outlook outlook_of(const Bvh& tree, std::span<const Triangle> triangles, std::sp
   const auto count = static_cast<double>(triangles.size());
   const OrderedTree in{tree, {}};
   Outlook out;
-  out.price = options.baseline_price * count;
+  out.price = options.baseline_start + options.baseline_price * count;
   for (const RaysToCome& kind : rays) {
     require(kind.expected >= 0.0 && std::isfinite(kind.expected), "expected", kind.expected,
             "of finite numbers >= 0");
-    out.price += options.kind_price * count;
+    out.price += options.kind_start + options.kind_price * count;
     const std::vector<double> costs = ray_costs(in, triangles, thinned(kind.some, kCounted), kind.query);
     double sum = 0.0;
     for (const double cost : costs) sum += cost;

@@ -17,11 +17,13 @@ struct RaysToCome {
 };
 
 struct OutlookOptions {
-  // Of planning, a triangle: for the baseline, and for each kind of rays. Units as in PlanPrices. Rounded up
-  // from one run of an earlier planner, which made five candidates: today's is cheaper, so that a plan may be
-  // left out where it would pay, and is never made where it would not.
-  double baseline_price = 200.0;
-  double kind_price = 3000.0;
+  // Of planning, whatever the scene and a triangle: for the baseline, and for each kind of rays with drawing
+  // them, uploading what is kept and weighing it against the tree at hand. In box tests as devices take them,
+  // 3 ns: half a unit of PlanPrices. Rounded up from clocks of whole plans (host/notes/ray-aware.md).
+  double baseline_start = 1'000'000.0;
+  double baseline_price = 500.0;
+  double kind_start = 4'000'000.0;
+  double kind_price = 400.0;
   // What planning may take of the work to come. Where it finds nothing, a run is longer by that at most.
   double most_share = 0.05;
 

@@ -102,7 +102,7 @@ void PlanPool::fit(const Bvh& from, Entry& entry) {
   SampledOptions options = options_.sampled;
   options.most_work = std::min(options.most_work, options_.sample_share * baseline_units_);
   SampledTree sampled = optimise_for_rays(from, segments, {weights_, options_.prior_share}, options);
-  entry.tree.tree.bvh = merge_leaves(sampled.bvh, sampled.measures);
+  entry.tree.tree.bvh = merge_leaves(sampled.bvh, sampled.measures, {}, &entry.tree.tree.weights);
   entry.tree.build_units += options_.prices.trace * traced + sampled.work + for_all(options_.prices.finish);
   entry.fit_gain = sampled.saved;
 }
@@ -131,11 +131,12 @@ PlanPool::Entry PlanPool::make(const std::string& name) {
     if (name == "mix-rays") {
       fit(loose, entry);
     } else {
-      bvh = merge_leaves(loose, face_measures(loose, weights_));
+      bvh = merge_leaves(loose, face_measures(loose, weights_), {}, &entry.tree.tree.weights);
       entry.tree.build_units += for_all(options_.prices.finish);
     }
   }
   if (mixed || name == "sah-rays") entry.tree.bytes = bytes_of(bvh);
+  entry.tree.bytes += entry.tree.tree.weights.size() * sizeof(float);
   if (query_ == Query::kAny && name != "sah") learn(entry.tree);
   work_ += entry.tree.build_units;
   return entry;

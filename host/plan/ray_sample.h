@@ -32,10 +32,11 @@ enum class Query : std::uint32_t {
 inline constexpr double kBoxCost = 1.0;
 inline constexpr double kTriangleCost = 1.2;
 
-// A tree, and for any hit the ranks of its nodes (child_order.h); none: the nearer child goes first.
+// A tree, and what given rays make of its nodes.
 struct OrderedTree {
   Bvh bvh;
-  std::vector<float> ranks;
+  std::vector<float> ranks{};    // for any hit (child_order.h); none: the nearer child goes first
+  std::vector<float> weights{};  // how likely rays meet them, in any unit; none: as their areas say
 };
 
 // What each ray costs in the tree: kBoxCost a box tested, the root's not counted, kTriangleCost a triangle.

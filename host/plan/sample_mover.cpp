@@ -59,7 +59,7 @@ void SampleMover::take_back() {
   }
 }
 
-void SampleMover::run(const SampledOptions& options) {
+void SampleMover::run_plain(const SampledOptions& options) {
   least_ = options.least_saved * per_segment_;
   for (std::uint32_t i = 0; i < items_.size(); ++i) {
     if (masks_[i].any()) queue(i);
@@ -68,7 +68,7 @@ void SampleMover::run(const SampledOptions& options) {
     const Queued next = queue_.top();
     queue_.pop();
     if (items_[next.item].turn != next.turn || next.item == root_) continue;
-    const Place place = best_place(next.item);
+    const Place place = search(next.item);
     searches_ += 1;
     if (place.beside == kNone) continue;
     gained_ += double{place.gain};
@@ -85,7 +85,7 @@ double SampleMover::work() const {
 void SampleMover::queue(std::uint32_t item) {
   items_[item].turn += 1;
   if (item == root_) return;
-  const float hope = promise_of(item);
+  const float hope = promise(item);
   if (hope > gn_max(least_, GN_LEAST_GAIN * items_[item].cost)) queue_.push({hope, item, items_[item].turn});
 }
 
@@ -188,35 +188,6 @@ SampleMover::Place SampleMover::search(std::uint32_t item) {
   }
 }
 
-// The same code for machines that count bits and have wide vectors: it takes half the time.
-#if defined(__x86_64__)
-namespace {
-bool has_wide() {
-  static const bool wide = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("popcnt") != 0;
-  return wide;
-}
-}  // namespace
-[[gnu::target("avx2,popcnt"), gnu::flatten]] SampleMover::Place SampleMover::search_wide(std::uint32_t item) {
-  return search(item);
-}
-[[gnu::target("avx2,popcnt"), gnu::flatten]] float SampleMover::promise_wide(std::uint32_t item) {
-  return promise(item);
-}
-SampleMover::Place SampleMover::best_place(std::uint32_t item) {
-  return has_wide() ? search_wide(item) : search(item);
-}
-float SampleMover::promise_of(std::uint32_t item) {
-  return has_wide() ? promise_wide(item) : promise(item);
-}
-#else
-SampleMover::Place SampleMover::best_place(std::uint32_t item) {
-  return search(item);
-}
-float SampleMover::promise_of(std::uint32_t item) {
-  return promise(item);
-}
-#endif
-
 // The item's parent goes with it, to be the parent of it and its new sibling.
 void SampleMover::move(std::uint32_t item, const Place& place) {
   const std::uint32_t with = items_[item].parent;
@@ -318,5 +289,20 @@ std::vector<float> SampleMover::measures() const {
   }
   return out;
 }
+
+// The same code for machines that count bits and have wide vectors: it takes half the time.
+#if defined(__x86_64__)
+[[gnu::target("avx2,popcnt"), gnu::flatten]] void SampleMover::run_wide(const SampledOptions& options) {
+  run_plain(options);
+}
+void SampleMover::run(const SampledOptions& options) {
+  static const bool wide = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("popcnt") != 0;
+  wide ? run_wide(options) : run_plain(options);
+}
+#else
+void SampleMover::run(const SampledOptions& options) {
+  run_plain(options);
+}
+#endif
 
 }  // namespace gnomon

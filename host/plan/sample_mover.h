@@ -73,12 +73,10 @@ class SampleMover {
     const auto& pair = items_[items_[item].parent].children;
     return pair[0] == item ? pair[1] : pair[0];
   }
-  [[nodiscard]] float promise_of(std::uint32_t item);
+  void run_plain(const SampledOptions& options);
+  void run_wide(const SampledOptions& options);
   [[nodiscard]] float promise(std::uint32_t item);
-  [[nodiscard]] float promise_wide(std::uint32_t item);
-  [[nodiscard]] Place best_place(std::uint32_t item);
   [[nodiscard]] Place search(std::uint32_t item);
-  [[nodiscard]] Place search_wide(std::uint32_t item);
   [[nodiscard]] float cost_within(const GnBox& box, const SegmentMask& within, SegmentMask& known,
                                   float enough);
   Waiting weigh(std::uint32_t item, std::uint32_t beside, std::uint32_t pivot, float saved,

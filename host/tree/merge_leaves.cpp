@@ -18,14 +18,17 @@ void require(bool ok, const char* option, const std::string& value, const char* 
 
 class Merger {
  public:
-  Merger(const Bvh& bvh, std::span<const float> measures, const MergeOptions& options)
-      : bvh_(bvh), below_(bvh.nodes.size()) {
-    weigh(measures, options);
+  // kept: null, or receives the measures of the nodes that stay.
+  Merger(const Bvh& bvh, std::span<const float> measures, const MergeOptions& options,
+         std::vector<float>* kept)
+      : bvh_(bvh), measures_(measures), kept_(kept), below_(bvh.nodes.size()) {
+    weigh(options);
   }
 
   Bvh run() {
     out_.primitives = bvh_.primitives;
     out_.nodes.resize(2 * std::size_t{below_[0].inner} + 1);
+    if (kept_ != nullptr) kept_->resize(out_.nodes.size());
     write(0, 0, 0);
     return std::move(out_);
   }
@@ -39,13 +42,13 @@ class Merger {
   };
 
   // Children before parents.
-  void weigh(std::span<const float> measures, const MergeOptions& options) {
+  void weigh(const MergeOptions& options) {
     const std::vector<std::uint32_t> order = parents_first(bvh_);
     for (auto index = order.rbegin(); index != order.rend(); ++index) {
       const Node& node = bvh_.nodes[*index];
       Below& below = below_[*index];
       const auto leaf_cost = [&](std::uint32_t triangles) {
-        return measures[*index] * (options.cost_triangle * static_cast<float>(triangles));
+        return measures_[*index] * (options.cost_triangle * static_cast<float>(triangles));
       };
       if (node.count > 0) {
         below = {leaf_cost(node.count), node.first, node.count, 0};
@@ -53,7 +56,7 @@ class Merger {
       }
       const Below& left = below_[node.first];
       const Below& right = below_[node.first + 1];
-      below = {measures[*index] * options.cost_inner + left.cost + right.cost, left.first,
+      below = {measures_[*index] * options.cost_inner + left.cost + right.cost, left.first,
                left.triangles + right.triangles, left.inner + right.inner + 1};
       const float as_leaf = leaf_cost(below.triangles);
       if (below.triangles <= options.max_leaf_size && as_leaf <= below.cost) {
@@ -66,6 +69,7 @@ class Merger {
   // splits: inner nodes to the left of the subtree. As deep as the tree.
   void write(std::uint32_t index, std::uint32_t number, std::uint32_t splits) {
     Node node = bvh_.nodes[index];
+    if (kept_ != nullptr) (*kept_)[number] = measures_[index];
     if (below_[index].inner == 0) {
       node.first = below_[index].first;
       node.count = below_[index].triangles;
@@ -81,6 +85,8 @@ class Merger {
   }
 
   const Bvh& bvh_;
+  std::span<const float> measures_;
+  std::vector<float>* kept_;
   std::vector<Below> below_;
   Bvh out_;
 };
@@ -102,15 +108,17 @@ std::vector<float> face_measures(const Bvh& bvh, const std::array<float, 3>& fac
   return out;
 }
 
-Bvh merge_leaves(const Bvh& bvh, std::span<const float> measures, const MergeOptions& options) {
+Bvh merge_leaves(const Bvh& bvh, std::span<const float> measures, const MergeOptions& options,
+                 std::vector<float>* kept) {
   options.check();
   if (measures.size() != bvh.nodes.size()) {
     throw Error(ErrorCode::kInvalidArgument, std::to_string(measures.size()) + " measures for " +
                                                  std::to_string(bvh.nodes.size()) +
                                                  " nodes; merge_leaves takes one a node");
   }
+  if (kept != nullptr) kept->clear();
   if (bvh.nodes.empty()) return bvh;
-  return Merger(bvh, measures, options).run();
+  return Merger(bvh, measures, options, kept).run();
 }
 
 }  // namespace gnomon

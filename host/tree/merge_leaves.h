@@ -26,8 +26,9 @@ struct MergeOptions {
 
 // The tree of least cost that comes of `bvh` by making leaves of inner nodes, where a node is visited as
 // often as `measures` says (one a node, any unit). Leaf order stays, nodes are numbered as builders number.
-// Throws Error{kInvalidArgument}: options, another number of measures than nodes.
+// kept: receives the measures of the nodes that stay, unless null. Throws Error{kInvalidArgument}: options,
+// another number of measures than nodes.
 [[nodiscard]] Bvh merge_leaves(const Bvh& bvh, std::span<const float> measures,
-                               const MergeOptions& options = {});
+                               const MergeOptions& options = {}, std::vector<float>* kept = nullptr);
 
 }  // namespace gnomon

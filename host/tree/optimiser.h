@@ -40,6 +40,9 @@ class Optimiser {
   TreeWeight weigh() {
     join();
     costs_.prepare(slots_);
+    for (std::uint32_t slot = GN_ROOT_SLOT + 1; slot < slots_.size(); ++slot) {
+      if (below_[gn_pair_near(above_.data(), slot)].changed != 0) settled_[slot] = false;
+    }
     TreeWeight weight;
     weight.bins.resize(GN_MEASURE_BINS);
     for (std::uint32_t slot = GN_ROOT_SLOT; slot < slots_.size(); ++slot) {
@@ -54,8 +57,9 @@ class Optimiser {
   std::uint32_t move(std::uint32_t floor) {
     moves_.clear();
     for (std::uint32_t slot = GN_ROOT_SLOT + 1; slot < slots_.size(); ++slot) {
-      if (gn_cost_bin(costs_.of(slots_, slot)) < floor) continue;
+      if (settled_[slot] || gn_cost_bin(costs_.of(slots_, slot)) < floor) continue;
       const GnMove found = costs_.find(slots_, above_, slot);
+      settled_[slot] = options_.leave_settled && found.target == GN_NONE;
       if (found.target != GN_NONE) moves_.push_back(found);
     }
     settle();
@@ -65,6 +69,8 @@ class Optimiser {
       put(m.parent, sibling);
       put(m.node ^ 1U, target);
       put(m.target, parent_of_pair(m.node));
+      for (const std::uint32_t written : {m.parent, m.node, m.target})
+        below_[written / 2].changed = GN_RELINKED;
     }
     return static_cast<std::uint32_t>(moves_.size());
   }
@@ -85,6 +91,7 @@ class Optimiser {
     slots_.resize(bvh_.nodes.size() + 1);
     above_.resize(slots_.size() / 2 + 1);
     below_.resize(above_.size());
+    settled_.resize(slots_.size());
     for (std::uint32_t i = 0; i < bvh_.nodes.size(); ++i) {
       Node node = bvh_.nodes[i];
       if (is_inner_slot(node)) {
@@ -137,8 +144,10 @@ class Optimiser {
       }
       const GnBelow l = below_of(left);
       const GnBelow r = below_of(right);
-      below_[node.first / 2] = {l.inner + r.inner + 1, l.triangles + r.triangles,
-                                std::max(l.height, r.height) + 1, 0};
+      GnBelow& own = below_[node.first / 2];
+      const bool changed = own.changed == GN_RELINKED || l.changed != 0 || r.changed != 0;
+      own = {l.inner + r.inner + 1, l.triangles + r.triangles, std::max(l.height, r.height) + 1,
+             std::uint32_t{changed}};
     }
   }
 
@@ -222,6 +231,7 @@ class Optimiser {
   std::vector<Node> slots_;
   std::vector<std::uint32_t> above_;
   std::vector<GnBelow> below_;
+  std::vector<bool> settled_;  // one a slot
   std::vector<GnMove> moves_;
 };
 

@@ -39,10 +39,11 @@ WideNode empty_node() {
 class Collapse {
  public:
   Collapse(const Bvh& bvh, std::span<const GnTriangle> triangles, const CollapseOptions& options,
-           std::span<const float> slot_keys)
+           std::span<const float> slot_keys, std::span<const float> weights)
       : bvh_(bvh),
         triangles_(triangles),
         costs_{options.cost_node, options.cost_block},
+        weights_{weights.data(), weights.empty() ? 0U : 1U},
         keys_{slot_keys.data(), slot_keys.empty() ? 0U : 1U} {
     forests_.resize(bvh.nodes.size() / 2);
     weigh();
@@ -73,19 +74,19 @@ class Collapse {
       const Node& node = bvh_.nodes[*it];
       const GnForest left = forest_of(node.first);
       const GnForest right = forest_of(node.first + 1);
-      forests_[(node.first - 1) / 2] = gn_inner_forest(gn_half_area(&node), &left, &right, costs_);
+      forests_[(node.first - 1) / 2] = gn_inner_forest(gn_node_value(bvh_.nodes.data(), *it, &weights_), &left, &right, costs_);
     }
   }
 
   [[nodiscard]] GnForest forest_of(std::uint32_t node) const {
-    return gn_forest_of(bvh_.nodes.data(), forests_.data(), node, costs_.block);
+    return gn_forest_of(bvh_.nodes.data(), forests_.data(), node, &weights_, costs_.block);
   }
 
   // Writes the wide node at `place`; its inner children get neighbouring places, then each is written with
   // all that is below it. Depth is that of the tree: recursion is shallow.
   void emit(std::uint32_t root, std::uint32_t place, std::uint32_t depth) {
     GnSlots slots;
-    gn_open_wide_node(bvh_.nodes.data(), forests_.data(), root, costs_, &keys_, &slots);
+    gn_open_wide_node(bvh_.nodes.data(), forests_.data(), root, costs_, &weights_, &keys_, &slots);
     wide_.depth = std::max(wide_.depth, depth);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> inner;
     for (std::uint32_t slot = 0; slot < slots.count; ++slot) {
@@ -127,7 +128,8 @@ class Collapse {
   const Bvh& bvh_;
   std::span<const GnTriangle> triangles_;
   GnCollapseCosts costs_;
-  GnSlotKeys keys_;
+  GnNodeValues weights_;
+  GnNodeValues keys_;
   std::vector<GnForest> forests_;
   WideBvh wide_;
 };
@@ -171,6 +173,18 @@ void check_slot_keys(std::span<const float> slot_keys, std::size_t nodes) {
               "slot key " + std::to_string(bad - slot_keys.begin()) + " is NaN; keys must have an order");
 }
 
+void check_node_weights(std::span<const float> weights, std::size_t nodes) {
+  if (!weights.empty() && weights.size() != nodes) {
+    throw Error(ErrorCode::kInvalidArgument, std::to_string(weights.size()) + " weights for a tree of " +
+                                                 std::to_string(nodes) + " nodes; give one a node or none");
+  }
+  const auto bad = std::find_if(weights.begin(), weights.end(),
+                                [](float weight) { return !(weight >= 0.0F) || std::isinf(weight); });
+  if (bad == weights.end()) return;
+  throw Error(ErrorCode::kInvalidArgument, "weight " + std::to_string(bad - weights.begin()) + " of a node is " +
+                                               std::to_string(*bad) + "; weights are finite and >= 0");
+}
+
 void CollapseOptions::check() const {
   check_cost("cost_node", cost_node);
   check_cost("cost_block", cost_block);
@@ -182,11 +196,13 @@ void CollapseOptions::check() const {
 }
 
 WideBvh collapse_reference(const Bvh& bvh, std::span<const GnTriangle> triangles,
-                           const CollapseOptions& options, std::span<const float> slot_keys) {
+                           const CollapseOptions& options, std::span<const float> slot_keys,
+                           std::span<const float> weights) {
   options.check();
   check_slot_keys(slot_keys, bvh.nodes.size());
+  check_node_weights(weights, bvh.nodes.size());
   if (bvh.nodes.empty()) return {{empty_node()}, {}, 1};
-  return Collapse(bvh, triangles, options, slot_keys).run();
+  return Collapse(bvh, triangles, options, slot_keys, weights).run();
 }
 
 WideStats stats_of(const WideBvh& wide) {

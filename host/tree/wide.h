@@ -40,14 +40,17 @@ struct WideBvh {
 // Error{kInvalidArgument}. Collapses with the least expected cost under the surface area heuristic (Ylitie,
 // Karras, Laine 2017). Same bytes as the device's.
 // A node's slots are in order of area, or of `slot_keys`, one a node of `bvh` (gnomon/plan/child_order.h):
-// any hit looks at the last one first. Throws Error{kInvalidArgument} also for another number of keys or one
-// that is NaN.
+// any hit looks at the last one first. What is expected is by areas, or by `weights`, one a node: how likely
+// rays meet its box. Throws Error{kInvalidArgument} also for another number of keys or weights, a key that is
+// NaN, a weight that is not finite and >= 0.
 [[nodiscard]] WideBvh collapse_reference(const Bvh& bvh, std::span<const GnTriangle> triangles,
                                          const CollapseOptions& options = {},
-                                         std::span<const float> slot_keys = {});
+                                         std::span<const float> slot_keys = {},
+                                         std::span<const float> weights = {});
 
 // Throws as collapse_reference for keys of a tree of so many nodes; none are fine.
 void check_slot_keys(std::span<const float> slot_keys, std::size_t nodes);
+void check_node_weights(std::span<const float> weights, std::size_t nodes);
 
 [[noreturn]] void throw_leaf_too_large(std::uint32_t triangles);
 

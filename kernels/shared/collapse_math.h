@@ -26,17 +26,29 @@ GN_INLINE gn_f32 gn_half_area(GN_GLOBAL const GnNode* node) {
   return dx * (dy + dz) + dy * dz;
 }
 
+// What a caller says of each node of the binary tree instead of its area: how likely rays meet its box, or where its slot
+// is to be.
+typedef struct GnNodeValues {
+  GN_GLOBAL const gn_f32* of_nodes;
+  gn_u32 given;  // 0: areas
+} GnNodeValues;
+
+GN_INLINE gn_f32 gn_node_value(GN_GLOBAL const GnNode* nodes, gn_u32 node, const GnNodeValues* values) {
+  return values->given != 0u ? values->of_nodes[node] : gn_half_area(nodes + node);
+}
+
+// area: or the node's weight.
 GN_INLINE gn_f32 gn_wide_leaf_cost(gn_f32 area, gn_u32 triangles, gn_f32 block_cost) {
   return area * (block_cost * (gn_f32)gn_blocks_of(triangles));
 }
 
 // A leaf of the binary tree is a leaf whatever it may be replaced by.
-GN_INLINE GnForest gn_leaf_forest(GN_GLOBAL const GnNode* leaf, gn_f32 block_cost) {
+GN_INLINE GnForest gn_leaf_forest(gn_f32 area, gn_u32 triangles, gn_f32 block_cost) {
   GnForest forest;
   int i;
-  const gn_f32 cost = gn_wide_leaf_cost(gn_half_area(leaf), leaf->count, block_cost);
+  const gn_f32 cost = gn_wide_leaf_cost(area, triangles, block_cost);
   for (i = 0; i < 7; ++i) forest.cost[i] = cost;
-  forest.triangles = leaf->count;
+  forest.triangles = triangles;
   return forest;
 }
 
@@ -72,8 +84,9 @@ GN_INLINE GnForest gn_inner_forest(gn_f32 area, const GnForest* left, const GnFo
 
 // The forest of any node: inner ones' were worked out before, at the rank of their split.
 GN_INLINE GnForest gn_forest_of(GN_GLOBAL const GnNode* nodes, GN_GLOBAL const GnForest* forests, gn_u32 node,
-                                gn_f32 block_cost) {
-  if (nodes[node].count > 0u) return gn_leaf_forest(nodes + node, block_cost);
+                                const GnNodeValues* weights, gn_f32 block_cost) {
+  if (nodes[node].count > 0u)
+    return gn_leaf_forest(gn_node_value(nodes, node, weights), nodes[node].count, block_cost);
   return forests[(nodes[node].first - 1u) / 2u];
 }
 
@@ -84,16 +97,6 @@ typedef struct GnSlots {
   gn_f32 key[8];
   gn_u32 count;
 } GnSlots;
-
-// What decides a child's slot: its area, or a key a node of the caller's (any hit looks at the largest first).
-typedef struct GnSlotKeys {
-  GN_GLOBAL const gn_f32* of_nodes;
-  gn_u32 given;  // 0: areas
-} GnSlotKeys;
-
-GN_INLINE gn_f32 gn_slot_key(GN_GLOBAL const GnNode* nodes, gn_u32 node, const GnSlotKeys* keys) {
-  return keys->given != 0u ? keys->of_nodes[node] : gn_half_area(nodes + node);
-}
 
 // Enters a child behind all whose key is no larger.
 GN_INLINE void gn_enter_slot(GnSlots* slots, gn_u32 node, gn_u32 triangles, gn_f32 key) {
@@ -110,18 +113,17 @@ GN_INLINE void gn_enter_slot(GnSlots* slots, gn_u32 node, gn_u32 triangles, gn_f
   slots->count += 1u;
 }
 
-// Triangles of a child that becomes a leaf, 0 for one that becomes a wide node.
-GN_INLINE gn_u32 gn_leaf_triangles(GN_GLOBAL const GnNode* node, const GnForest* forest, gn_f32 block_cost) {
-  if (node->count > 0u) return node->count;
+// Triangles of an inner node that becomes a leaf, 0 for one that becomes a wide node.
+GN_INLINE gn_u32 gn_leaf_triangles(gn_f32 area, const GnForest* forest, gn_f32 block_cost) {
   if (forest->triangles > GN_WIDTH) return 0u;
-  return forest->cost[0] == gn_wide_leaf_cost(gn_half_area(node), forest->triangles, block_cost) ? forest->triangles
-                                                                                                  : 0u;
+  return forest->cost[0] == gn_wide_leaf_cost(area, forest->triangles, block_cost) ? forest->triangles : 0u;
 }
 
 // The children of the wide node that replaces `root`: at most eight, in order of their keys. A root that is a leaf
 // is its own only child.
 GN_INLINE void gn_open_wide_node(GN_GLOBAL const GnNode* nodes, GN_GLOBAL const GnForest* forests, gn_u32 root,
-                                 GnCollapseCosts costs, const GnSlotKeys* keys, GnSlots* slots) {
+                                 GnCollapseCosts costs, const GnNodeValues* weights, const GnNodeValues* keys,
+                                 GnSlots* slots) {
   gn_u32 waiting[8], budgets[8], height = 1u;
   waiting[0] = root;
   budgets[0] = nodes[root].count > 0u ? 1u : 8u;
@@ -133,20 +135,21 @@ GN_INLINE void gn_open_wide_node(GN_GLOBAL const GnNode* nodes, GN_GLOBAL const 
     gn_f32 cost;
     height -= 1u;
     if (nodes[node].count > 0u) {
-      gn_enter_slot(slots, node, nodes[node].count, gn_slot_key(nodes, node, keys));
+      gn_enter_slot(slots, node, nodes[node].count, gn_node_value(nodes, node, keys));
       continue;
     }
     if (budget < 8u) {
-      forest = gn_forest_of(nodes, forests, node, costs.block);
+      forest = gn_forest_of(nodes, forests, node, weights, costs.block);
       while (budget > 1u && forest.cost[budget - 1u] == forest.cost[budget - 2u]) budget -= 1u;
       if (budget == 1u) {
-        gn_enter_slot(slots, node, gn_leaf_triangles(nodes + node, &forest, costs.block), gn_slot_key(nodes, node, keys));
+        const gn_f32 weight = gn_node_value(nodes, node, weights);
+        gn_enter_slot(slots, node, gn_leaf_triangles(weight, &forest, costs.block), gn_node_value(nodes, node, keys));
         continue;
       }
     }
     first = nodes[node].first;
-    left = gn_forest_of(nodes, forests, first, costs.block);
-    right = gn_forest_of(nodes, forests, first + 1u, costs.block);
+    left = gn_forest_of(nodes, forests, first, weights, costs.block);
+    right = gn_forest_of(nodes, forests, first + 1u, weights, costs.block);
     share = gn_left_share(&left, &right, budget, &cost);
     waiting[height] = first + 1u;
     budgets[height] = budget - share;

@@ -20,8 +20,13 @@ GN_INLINE gn_lanes gn_weighed_faces(const gn_f32* w, gn_lanes dx, gn_lanes dy, g
 // Half the surface area, which settles ties whatever the measure.
 GN_INLINE gn_lanes gn_half_surface(gn_lanes dx, gn_lanes dy, gn_lanes dz) { return dx * (dy + dz) + dy * dz; }
 
+// Of one box, by its extents: a box in another address space need not be copied for it.
+GN_INLINE gn_f32 gn_linear_extents(const gn_f32* w, gn_f32 dx, gn_f32 dy, gn_f32 dz) {
+  return gn_first_lane(gn_weighed_faces(w, GN_ALL(dx), GN_ALL(dy), GN_ALL(dz)));
+}
+
 GN_INLINE gn_f32 gn_linear_measure(const gn_f32* w, const gn_f32* lo, const gn_f32* hi) {
-  return gn_first_lane(gn_weighed_faces(w, GN_ALL(hi[0] - lo[0]), GN_ALL(hi[1] - lo[1]), GN_ALL(hi[2] - lo[2])));
+  return gn_linear_extents(w, hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]);
 }
 
 GN_INLINE gn_f32 gn_surface_measure(const gn_f32* lo, const gn_f32* hi) {

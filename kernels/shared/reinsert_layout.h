@@ -25,6 +25,12 @@
 // Measures are added up as integers, the root's being this many: sums do not depend on their order.
 #define GN_ROOT_UNITS 1073741824.0f
 
+// Of GnBelow::changed, from when a pair is written until sizes are worked out again.
+#define GN_RELINKED 2u
+
+// Beside the bin a node's cost is in: no better place was found for it and nothing near has moved since.
+#define GN_SETTLED 0x8000u
+
 // A node that would be better placed beside `target`. gain: how much less all inner nodes would then measure. pivot: the
 // lowest node above both.
 typedef struct GnMove {
@@ -43,7 +49,7 @@ typedef struct GnBelow {
   gn_u32 inner;      // inner nodes, itself counted
   gn_u32 triangles;
   gn_u32 height;     // levels below it
-  gn_u32 pad;
+  gn_u32 changed;    // 0: links below it are what they were when sizes were worked out before; GN_RELINKED: its children's
 } GnBelow;
 GN_SIZE_IS(GnBelow, 16);
 

@@ -20,12 +20,30 @@ typedef struct GnBox {
   gn_f32 hi[3];
 } GnBox;
 
+// Axes are written out here and below: a loop over them has compilers keep the box in memory and read it back
+// in other pieces than it was written in, for which the search waited as long as for all else.
 GN_INLINE void gn_load_box(GN_GLOBAL const GnNode* node, GnBox* box) {
-  int k;
-  for (k = 0; k < 3; ++k) {
-    box->lo[k] = node->lo[k];
-    box->hi[k] = node->hi[k];
-  }
+  box->lo[0] = node->lo[0];
+  box->lo[1] = node->lo[1];
+  box->lo[2] = node->lo[2];
+  box->hi[0] = node->hi[0];
+  box->hi[1] = node->hi[1];
+  box->hi[2] = node->hi[2];
+}
+
+// Makes a box reach around a node.
+GN_INLINE void gn_grow_box(GnBox* box, GN_GLOBAL const GnNode* node) {
+  box->lo[0] = gn_min(box->lo[0], node->lo[0]);
+  box->lo[1] = gn_min(box->lo[1], node->lo[1]);
+  box->lo[2] = gn_min(box->lo[2], node->lo[2]);
+  box->hi[0] = gn_max(box->hi[0], node->hi[0]);
+  box->hi[1] = gn_max(box->hi[1], node->hi[1]);
+  box->hi[2] = gn_max(box->hi[2], node->hi[2]);
+}
+
+GN_INLINE int gn_is_box_of(const GnBox* box, GN_GLOBAL const GnNode* node) {
+  return (box->lo[0] == node->lo[0]) & (box->lo[1] == node->lo[1]) & (box->lo[2] == node->lo[2]) &
+         (box->hi[0] == node->hi[0]) & (box->hi[1] == node->hi[1]) & (box->hi[2] == node->hi[2]);
 }
 
 GN_INLINE gn_f32 gn_box_cost(const GnFaces* faces, const GnBox* box) {
@@ -33,20 +51,15 @@ GN_INLINE gn_f32 gn_box_cost(const GnFaces* faces, const GnBox* box) {
 }
 
 GN_INLINE gn_f32 gn_slot_cost(const GnFaces* faces, GN_GLOBAL const GnNode* node) {
-  GnBox box;
-  gn_load_box(node, &box);
-  return gn_box_cost(faces, &box);
+  return gn_linear_extents(faces->w, node->hi[0] - node->lo[0], node->hi[1] - node->lo[1],
+                           node->hi[2] - node->lo[2]);
 }
 
 // The cost of the box around a node and another box.
 GN_INLINE gn_f32 gn_joint_cost(const GnFaces* faces, const GnBox* box, GN_GLOBAL const GnNode* node) {
-  GnBox both;
-  int k;
-  for (k = 0; k < 3; ++k) {
-    both.lo[k] = gn_min(box->lo[k], node->lo[k]);
-    both.hi[k] = gn_max(box->hi[k], node->hi[k]);
-  }
-  return gn_box_cost(faces, &both);
+  return gn_linear_extents(faces->w, gn_max(box->hi[0], node->hi[0]) - gn_min(box->lo[0], node->lo[0]),
+                           gn_max(box->hi[1], node->hi[1]) - gn_min(box->lo[1], node->lo[1]),
+                           gn_max(box->hi[2], node->hi[2]) - gn_min(box->lo[2], node->lo[2]));
 }
 
 GN_INLINE gn_u32 gn_cost_bin(gn_f32 cost) { return gn_bits_of(cost) >> GN_MEASURE_BIN_SHIFT; }
@@ -112,9 +125,9 @@ GN_INLINE GnMove gn_find_move(GN_GLOBAL const GnNode* slots, GN_GLOBAL const gn_
   GnSearch search;
   GnMove move;
   GnBox box, shrunk;
-  gn_u32 pivot = above[node >> 1], beside = node ^ 1u, k;
+  gn_u32 pivot = above[node >> 1], beside = node ^ 1u;
   gn_f32 own, saved;
-  int going = 1, first = 1;
+  int going = 1, first = 1, shrinks = 1;
   gn_load_box(slots + node, &box);
   gn_load_box(slots + beside, &shrunk);  // of what will be left of the pivot
   own = gn_box_cost(faces, &box);
@@ -131,7 +144,6 @@ GN_INLINE GnMove gn_find_move(GN_GLOBAL const GnNode* slots, GN_GLOBAL const gn_
   while (going) {
     const gn_f32 gain = saved - gn_joint_cost(faces, &box, slots + beside);
     const gn_f32 below = gn_saved_below(faces, slots + beside, gain);
-    int same = 1;
     if (!first && gain > move.gain) {
       move.gain = gain;
       move.target = beside;
@@ -139,22 +151,25 @@ GN_INLINE GnMove gn_find_move(GN_GLOBAL const GnNode* slots, GN_GLOBAL const gn_
     }
     if (below - own > move.gain) gn_push_pair(&search, slots[beside].first, below);
     gn_search_below(slots, faces, &box, own, pivot, &search, &move);
-    if (!first) {
-      const gn_f32 before = gn_slot_cost(faces, slots + pivot);
-      for (k = 0u; k < 3u; ++k) {
-        shrunk.lo[k] = gn_min(shrunk.lo[k], slots[beside].lo[k]);
-        shrunk.hi[k] = gn_max(shrunk.hi[k], slots[beside].hi[k]);
-      }
-      saved += before - gn_box_cost(faces, &shrunk);
-    }
-    for (k = 0u; k < 3u; ++k) same &= shrunk.lo[k] == slots[pivot].lo[k] && shrunk.hi[k] == slots[pivot].hi[k];
     // Where the pivot does not shrink, nothing above it does.
-    if (pivot == GN_ROOT_SLOT || search.left == 0u || (same && saved - own <= move.gain)) going = 0;
+    if (shrinks && !first) {
+      gn_grow_box(&shrunk, slots + beside);
+      saved += gn_slot_cost(faces, slots + pivot) - gn_box_cost(faces, &shrunk);
+    }
+    if (shrinks) shrinks = !gn_is_box_of(&shrunk, slots + pivot);
+    if (pivot == GN_ROOT_SLOT || search.left == 0u || (!shrinks && saved - own <= move.gain)) going = 0;
     beside = pivot ^ 1u;
     pivot = above[pivot >> 1];
     first = 0;
   }
   return move;
+}
+
+// The pair around which a node was left where it is: changes outside of what is below its grandparent do not have it
+// searched for again.
+GN_INLINE gn_u32 gn_pair_near(GN_GLOBAL const gn_u32* above, gn_u32 node) {
+  const gn_u32 parent = above[node >> 1];
+  return parent == GN_ROOT_SLOT ? node >> 1 : parent >> 1;
 }
 
 // The slots a move changes or relies on: the node's own, its parent's, its sibling's, the target's.

@@ -69,6 +69,19 @@ TEST_CASE("poor trees move much, and the same on every device", "[portable][opti
   REQUIRE(require_same(gnomon::test::soup(1500, 212, 0.2F), poor(4), {}));
 }
 
+TEST_CASE("nodes that found no better place are left alone until something near moves, as in the reference",
+          "[portable][optimise]") {
+  OptimiseOptions patient = every_node();
+  patient.leave_settled = true;
+  for (const auto& [name, triangles] : gnomon::test::awkward_inputs()) {
+    CAPTURE(name);
+    require_same(triangles, poor(), patient);
+  }
+  REQUIRE(require_same(gnomon::test::soup(1500, 222, 0.2F), poor(), patient));
+  patient.share = 0.25F;
+  REQUIRE(require_same(gnomon::test::soup(5000, 223, 0.2F), poor(4), patient));
+}
+
 TEST_CASE("large trees are cut into subtrees and optimised as the reference's", "[unlimited][optimise]") {
   REQUIRE(require_same(gnomon::test::soup(30000, 213, 0.2F), {}, every_node(2)));
   OptimiseOptions from_above;

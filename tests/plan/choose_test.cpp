@@ -75,6 +75,19 @@ TEST_CASE("what a plan keeps is cheaper on rays it has not seen, and sound") {
     REQUIRE(kept.tree == decision.tree);
   }
   REQUIRE_FALSE(plan.trees[plan.decisions[1].tree].tree.ranks.empty());
+  REQUIRE(plan.trees[0].tree.weights.empty());
+  for (std::size_t i = 1; i < plan.trees.size(); ++i) {
+    const gnomon::OrderedTree& tree = plan.trees[i].tree;
+    REQUIRE(tree.weights.size() == tree.bvh.nodes.size());
+    // No child is met more often than its parent.
+    for (std::size_t n = 0; n < tree.weights.size(); ++n) {
+      const gnomon::Node& node = tree.bvh.nodes[n];
+      REQUIRE(tree.weights[n] > 0.0F);
+      if (node.count > 0) continue;
+      const float most = std::max(tree.weights[node.first], tree.weights[node.first + 1]);
+      REQUIRE(most <= tree.weights[n] * 1.0001F);
+    }
+  }
 }
 
 TEST_CASE("where few rays come nothing but the baseline is made") {
@@ -106,7 +119,9 @@ TEST_CASE("rays that nothing can be done for keep the baseline") {
   const Scene soup = gnomon::generate_scene("random", 3000, 1);
   const std::vector<PlanRays> rays{{"random", Query::kEvery, gnomon::random_rays(soup, 512, 1),
                                     gnomon::random_rays(soup, 1024, 2), kMany}};
-  const Plan plan = gnomon::make_plan(soup.triangles, rays);
+  PlanOptions options;
+  options.sample_share = 1.0;  // enough to look for moves in
+  const Plan plan = gnomon::make_plan(soup.triangles, rays, options);
   CAPTURE(to_json(plan));
   REQUIRE(plan.decisions[0].kept == "sah");
   REQUIRE_THAT(plan.decisions[0].reason, Catch::Contains("no candidate"));

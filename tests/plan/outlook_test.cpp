@@ -21,7 +21,9 @@ TEST_CASE("planning pays where its price is a small share of the rays' work") {
   for (const double one : gnomon::ray_costs({tree, {}}, scene.triangles, rays, Query::kClosest))
     cost += one / 256.0;
   OutlookOptions options;
+  options.baseline_start = 30'000.0;
   options.baseline_price = 100.0;
+  options.kind_start = 50'000.0;
   options.kind_price = 400.0;
   options.most_share = 0.1;
   const auto triangles = static_cast<double>(scene.triangles.size());
@@ -29,10 +31,11 @@ TEST_CASE("planning pays where its price is a small share of the rays' work") {
     const std::vector<RaysToCome> to_come{{Query::kClosest, rays, expected}};
     return outlook_of(tree, scene.triangles, to_come, options);
   };
-  const double enough = 10.0 * 500.0 * triangles / cost;
+  const double price = 80'000.0 + 500.0 * triangles;
+  const double enough = 10.0 * price / cost;
   const Outlook little = outlook(0.99 * enough);
   const Outlook much = outlook(1.01 * enough);
-  REQUIRE(little.price == Approx(500.0 * triangles));
+  REQUIRE(little.price == Approx(price));
   REQUIRE(little.work == Approx(0.99 * enough * cost));
   REQUIRE_FALSE(little.pays);
   REQUIRE(much.pays);
@@ -40,7 +43,7 @@ TEST_CASE("planning pays where its price is a small share of the rays' work") {
   // Two kinds: both works, and a price for each.
   const std::vector<RaysToCome> two{{Query::kClosest, rays, 1000.0}, {Query::kAny, rays, 0.0}};
   const Outlook both = outlook_of(tree, scene.triangles, two, options);
-  REQUIRE(both.price == Approx(900.0 * triangles));
+  REQUIRE(both.price == Approx(130'000.0 + 900.0 * triangles));
   REQUIRE(both.work == Approx(1000.0 * cost));
 }
 
@@ -56,6 +59,14 @@ TEST_CASE("outlooks of nothing do not pay, and bad options are refused") {
   options.most_share = 0.0;
   REQUIRE_THROWS_WITH(outlook_of(tree, scene.triangles, none, options), Catch::Contains("most_share"));
   options = {};
-  options.kind_price = -1.0;
-  REQUIRE_THROWS_WITH(outlook_of(tree, scene.triangles, none, options), Catch::Contains("kind_price"));
+  const std::pair<const char*, double OutlookOptions::*> prices[] = {
+      {"baseline_start", &OutlookOptions::baseline_start},
+      {"baseline_price", &OutlookOptions::baseline_price},
+      {"kind_start", &OutlookOptions::kind_start},
+      {"kind_price", &OutlookOptions::kind_price}};
+  for (const auto& [name, price] : prices) {
+    options = {};
+    options.*price = -1.0;
+    REQUIRE_THROWS_WITH(outlook_of(tree, scene.triangles, none, options), Catch::Contains(name));
+  }
 }

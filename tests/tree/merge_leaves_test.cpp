@@ -95,6 +95,18 @@ TEST_CASE("no way to join the leaves of a small tree costs less") {
   REQUIRE(joined > 60);
 }
 
+TEST_CASE("nodes that stay keep their measures") {
+  const auto triangles = gnomon::test::soup(200, 44, 0.5F);
+  const Bvh before = gnomon::build_reference(triangles, single_leaves());
+  const std::vector<float> measures = gnomon::face_measures(before, kSurface);
+  std::vector<float> kept{7.0F};
+  const Bvh after = merge_leaves(before, measures, {}, &kept);
+  REQUIRE(after.nodes.size() < before.nodes.size());
+  REQUIRE(kept == gnomon::face_measures(after, kSurface));
+  static_cast<void>(merge_leaves({}, {}, {}, &kept));
+  REQUIRE(kept.empty());
+}
+
 TEST_CASE("joined leaves change no hit") {
   const auto triangles = gnomon::test::soup(500, 41, 0.7F);
   const auto rays = gnomon::test::random_rays(500, 42);

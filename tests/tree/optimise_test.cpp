@@ -79,6 +79,26 @@ TEST_CASE("reinsertion makes a poor tree good") {
   REQUIRE(cost_of(after) < 0.9 * cost_of(before));
 }
 
+TEST_CASE("leaving settled nodes alone costs little") {
+  const auto triangles = gnomon::test::soup(3000, 202, 0.1F);
+  BuildOptions poor;
+  poor.median_depth = 1;
+  const Bvh before = gnomon::build_reference(triangles, poor);
+  OptimiseOptions options = every_node();
+  const Bvh all = gnomon::optimise_reference(before, options);
+  options.leave_settled = true;
+  const Bvh some = gnomon::optimise_reference(before, options);
+  if (const auto fault = gnomon::check_bvh(some, triangles, {})) FAIL(fault->what);
+  REQUIRE(tree_hash(some) != tree_hash(all));
+  REQUIRE(cost_of(some) < 1.02 * cost_of(all));
+  REQUIRE(cost_of(some) < 0.9 * cost_of(before));
+  // One pass has none that are settled before it.
+  options.max_passes = 1;
+  const Bvh once = gnomon::optimise_reference(before, options);
+  options.leave_settled = false;
+  REQUIRE(tree_hash(gnomon::optimise_reference(before, options)) == tree_hash(once));
+}
+
 TEST_CASE("two crossed pairs are put right by one move") {
   const Bvh bvh = crossed();
   const Bvh after = gnomon::optimise_reference(bvh, every_node());

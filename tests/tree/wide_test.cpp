@@ -2,9 +2,11 @@
 #include "gnomon/tree/wide.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <functional>
 
 #include "gnomon/base/error.h"
+#include "gnomon/shared/collapse_math.h"
 #include "gnomon/tree/build_reference.h"
 #include "support/wide_shapes.h"
 
@@ -54,7 +56,8 @@ double cost_of(const WideBvh& wide, const CollapseOptions& options) {
 // budgets by sums of two.
 class BruteForce {
  public:
-  BruteForce(const Bvh& bvh, const CollapseOptions& options) : bvh_(bvh), options_(options) {}
+  BruteForce(const Bvh& bvh, const CollapseOptions& options, std::span<const float> weights = {})
+      : bvh_(bvh), options_(options), weights_(weights) {}
 
   // Least cost below a wide node that replaces this inner node: over all cuts of at most eight nodes.
   double least_below(std::uint32_t node) const {
@@ -76,7 +79,7 @@ class BruteForce {
 
   // As one child: a leaf, or a wide node.
   double least_as_child(std::uint32_t node) const {
-    const double area = half_area(bvh_.nodes[node]);
+    const double area = weights_.empty() ? half_area(bvh_.nodes[node]) : double{weights_[node]};
     const std::uint32_t count = triangles(node);
     const double leaf = area * static_cast<double>(options_.cost_block) * gn_blocks_of(count);
     if (bvh_.nodes[node].count > 0) return leaf;
@@ -98,7 +101,29 @@ class BruteForce {
 
   const Bvh& bvh_;
   const CollapseOptions& options_;
+  std::span<const float> weights_;
 };
+
+// What the collapse makes least where nodes have weights: boxes tell which node a slot is.
+double cost_by_weights(const WideBvh& wide, const Bvh& bvh, std::span<const float> weights) {
+  double cost = 0.0;
+  for (const gnomon::WideNode& node : wide.nodes) {
+    for (std::uint32_t slot = 0; slot < GN_WIDTH && node.links[slot] != GN_NONE; ++slot) {
+      const auto same_box = [&](const Node& other) {
+        bool same = true;
+        for (int k = 0; k < 3; ++k)
+          same = same && other.lo[k] == node.planes[2 * k][slot] && other.hi[k] == node.planes[2 * k + 1][slot];
+        return same;
+      };
+      const auto from = std::find_if(bvh.nodes.begin(), bvh.nodes.end(), same_box);
+      REQUIRE(std::count_if(from, bvh.nodes.end(), same_box) == 1);
+      const std::uint32_t link = node.links[slot];
+      cost += double{weights[static_cast<std::size_t>(from - bvh.nodes.begin())]} *
+              (is_leaf(link) ? gn_blocks_of(gn_link_triangles(link)) : 1U);
+    }
+  }
+  return cost;
+}
 
 CollapseOptions costs(float node, float block) {
   CollapseOptions options;
@@ -134,6 +159,44 @@ TEST_CASE("collapsed trees of every shape keep all promises") {
       if (fault) FAIL(fault->what);
       REQUIRE(wide.depth <= stats_of(bvh, shape.options).max_depth + 1);
     }
+  }
+}
+
+TEST_CASE("with weights no way to collapse a small tree costs less by these") {
+  std::uint32_t unlike_areas = 0;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    const auto triangles = gnomon::test::soup(4 + seed % 11, 1900 + seed, 1.0F);
+    const Bvh bvh = gnomon::build_reference(triangles, gnomon::test::leaves_of(1));
+    // Of a node at most its parent's; some of none.
+    std::vector<float> weights(bvh.nodes.size(), 1.0F);
+    for (const Node& node : bvh.nodes) {
+      if (node.count > 0) continue;
+      const auto own = weights[static_cast<std::size_t>(&node - bvh.nodes.data())];
+      weights[node.first] = own * static_cast<float>((seed + node.first) % 5) / 4.0F;
+      weights[node.first + 1] = own * static_cast<float>((seed + 3 * node.first) % 4) / 3.0F;
+    }
+    CAPTURE(seed);
+    const WideBvh wide = gnomon::collapse_reference(bvh, triangles, {}, {}, weights);
+    if (const auto fault = gnomon::check_wide(wide, triangles)) FAIL(fault->what);
+    REQUIRE(cost_by_weights(wide, bvh, weights) ==
+            Approx(BruteForce(bvh, {}, weights).least_below(0)).margin(1e-6));
+    unlike_areas += same_bytes(wide, gnomon::collapse_reference(bvh, triangles)) ? 0 : 1;
+  }
+  REQUIRE(unlike_areas > 20);
+}
+
+TEST_CASE("areas given as weights collapse as areas do, and bad weights are refused") {
+  const auto triangles = gnomon::test::soup(300, 1990, 0.3F);
+  const Bvh bvh = gnomon::build_reference(triangles, gnomon::test::leaves_of(2));
+  std::vector<float> areas;
+  for (const Node& node : bvh.nodes) areas.push_back(gn_half_area(&node));
+  REQUIRE(same_bytes(gnomon::collapse_reference(bvh, triangles, {}, {}, areas),
+                     gnomon::collapse_reference(bvh, triangles)));
+  REQUIRE_THROWS_WITH(gnomon::collapse_reference(bvh, triangles, {}, {}, std::span(areas).first(3)),
+                      Catch::Contains("3 weights"));
+  for (const float bad : {-1.0F, NAN, INFINITY}) {
+    areas[5] = bad;
+    REQUIRE_THROWS_WITH(gnomon::collapse_reference(bvh, triangles, {}, {}, areas), Catch::Contains("weight 5"));
   }
 }
 

@@ -61,7 +61,7 @@ typedef struct GnPacket {
 #define GN_PACKET_FAR 1e18f  // of origins and the apex: products of edges and distances do not overflow
 #define GN_PACKET_UNDERFLOW 1e-30f
 
-// Parallel rays further from their middle than this share of the scene would meet different parts of it (packets.md).
+// Parallel rays further apart than this share of the scene would meet different parts of it (host/notes/packets.md).
 #define GN_BUNDLE_WIDTH 0.25f
 
 // The scene's largest extent; not above 0 where it is empty.

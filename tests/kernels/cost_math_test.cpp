@@ -1,5 +1,5 @@
-// kernels/shared/cost_math.h on the host: the arithmetic every tree is decided by.
-#include "gnomon/shared/cost_math.h"
+// kernels/shared/cost_math.h and axis_policy.h on the host: the arithmetic every tree is decided by.
+#include "gnomon/shared/axis_policy.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -86,4 +86,25 @@ TEST_CASE("the custom measure's example is Steiner's: the surface of the box gro
   REQUIRE(gn_measure_how(&measure, lo, hi) == 0);
   REQUIRE(gn_box_measure(&measure, 0, lo, hi) == Approx(grown).epsilon(1e-6));
   REQUIRE(gn_box_measure(&measure, 0, lo, lo) == Approx(2.0 * pi * 0.25).epsilon(1e-6));  // a point is a ball
+}
+
+TEST_CASE("a node's rating by its parent's split decides a leaf only where it is the node's own measure") {
+  GnHeuristic h{};
+  for (float& weight : h.measure.weights) weight = 1.0F;
+  h.rules.max_leaf_size = 8;
+  h.rules.cost_traversal = 1.0F;
+  h.rules.cost_triangle = 1.0F;
+  GnSplit split = gn_no_split();
+  split.axis = 0;
+  split.cost = 2.5F;
+  // A leaf costs two triangles, a split one step more than 2.5: by the unit cube's measure, 3, the split is
+  // better, by 1 the leaf.
+  GnNodeView node{{0, 0, 0}, {1, 1, 1}, 1.0F, 2, 5, 7, GN_SEEN_ONE_STEP};
+  REQUIRE(gn_becomes_leaf(&h, GN_SEEN_ONE_STEP, &node, &split) == 1);
+  REQUIRE(gn_becomes_leaf(&h, GN_SEEN_FEW_STEPS, &node, &split) == 0);  // rated in another way
+  h.rules.axes = GN_AXES_SPFH;  // whose fallback rates by surface area
+  REQUIRE(gn_becomes_leaf(&h, GN_SEEN_ONE_STEP, &node, &split) == 0);
+  h.rules.axes = GN_AXES_ALL;
+  node.probability = GN_FLOAT_MAX;  // nothing rated it
+  REQUIRE(gn_becomes_leaf(&h, GN_SEEN_ONE_STEP, &node, &split) == 0);
 }

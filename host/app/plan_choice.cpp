@@ -11,86 +11,6 @@
 namespace gnomon::app {
 namespace {
 
-double mean_cost(const OrderedTree& tree, const Scene& scene, std::span<const Ray> rays, Query query) {
-  const std::vector<double> costs = ray_costs(tree, scene.triangles, rays, query);
-  double sum = 0.0;
-  for (const double cost : costs) sum += cost;
-  return costs.empty() ? 0.0 : sum / static_cast<double>(costs.size());
-}
-
-double saving(double cost, double plain) {
-  return plain > 0.0 ? 1.0 - cost / plain : 0.0;
-}
-
-// As many as a race sees at most.
-constexpr std::uint64_t kCounted = 1024;
-
-// Rays that one tree is chosen for.
-struct Part {
-  std::vector<Ray> fit, probe;
-  Query query;
-  double expected;
-};
-
-struct Cost {
-  double fit = 0.0;
-  double probe = 0.0;
-};
-
-Cost cost_of(const OrderedTree& tree, const Scene& scene, std::span<const Part> parts) {
-  Cost sum;
-  for (const Part& part : parts) {
-    sum.fit += part.expected * mean_cost(tree, scene, part.fit, part.query);
-    sum.probe += part.expected * mean_cost(tree, scene, part.probe, part.query);
-  }
-  return sum;
-}
-
-Part part_of(const PlanRays& rays) {
-  return {thinned(rays.fit, kCounted), thinned(rays.probe, kCounted), rays.query, rays.expected};
-}
-
-// Chooses among some trees of the plan and, with auto, the plain one.
-ChosenTree choose(const std::string& rays, const Plan& plan, const std::vector<OrderedTree>& trees,
-                  std::span<const std::size_t> open, const PlanTask& task, std::span<const Part> parts,
-                  bool or_plain) {
-  const Cost plain = cost_of({task.plain.host, {}}, task.scene, parts);
-  ChosenTree best{rays, std::nullopt, "plain", 0.0, 0.0};
-  Cost least = plain;
-  for (const std::size_t i : open) {
-    const Cost cost = cost_of(trees[i], task.scene, parts);
-    if (best.tree ? cost.probe >= least.probe : or_plain && cost.probe >= plain.probe) continue;
-    least = cost;
-    best.tree = i;
-    best.name = plan.trees[i].name;
-  }
-  best.predicted = saving(least.fit, plain.fit);
-  best.measured = saving(least.probe, plain.probe);
-  return best;
-}
-
-std::vector<ChosenTree> choices(const Plan& plan, std::span<const PlanRays> rays, const PlanTask& task,
-                                bool by_name) {
-  std::vector<OrderedTree> trees;
-  for (const PlanTree& tree : plan.trees)
-    trees.push_back(task.wanted == TreesWanted::kOneForAll ? OrderedTree{tree.tree.bvh, {}} : tree.tree);
-  std::vector<Part> parts;
-  for (const PlanRays& some : rays) parts.push_back(part_of(some));
-  std::vector<ChosenTree> out;
-  if (task.wanted == TreesWanted::kOneForAll) {
-    std::vector<std::size_t> open;
-    for (std::size_t i = by_name && trees.size() > 1 ? 1 : 0; i < trees.size(); ++i) open.push_back(i);
-    out.push_back(choose("all", plan, trees, open, task, parts, !by_name));
-    return out;
-  }
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const std::size_t kept = plan.decisions[i].tree;
-    out.push_back(
-        choose(rays[i].name, plan, trees, std::span(&kept, 1), task, std::span(&parts[i], 1), !by_name));
-  }
-  return out;
-}
-
 std::string percent(double share) {
   return fixed(100.0 * share, 1) + " %";
 }
@@ -176,7 +96,7 @@ PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Pro
   how.choice = request.name;
   const std::vector<PlanRays> rays = task.draw();
   out.plan = make_plan(task.scene.triangles, rays, how, device_builder(task.context), progress);
-  out.chosen = choices(*out.plan, rays, task, by_name);
+  out.chosen = choose_trees(*out.plan, rays, task.scene.triangles, task.plain.host, task.wanted, !by_name);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }

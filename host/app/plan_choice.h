@@ -13,7 +13,7 @@
 #include "build_timing.h"
 #include "console.h"
 #include "gnomon/device/trace_device.h"
-#include "gnomon/plan/choose.h"
+#include "gnomon/plan/chosen_trees.h"
 #include "gnomon/plan/outlook.h"
 
 namespace gnomon::app {
@@ -34,15 +34,6 @@ void add_plan_options(CLI::App& command, PlanRequest& request, const std::string
 // What was given; once the command line is parsed.
 void settle(const CLI::App& command, PlanRequest& request);
 
-// The tree for some of the rays.
-struct ChosenTree {
-  std::string rays;
-  std::optional<std::size_t> tree;  // place in Plan::trees; none: the plain one
-  std::string name;                 // "plain" or a candidate's
-  double predicted = 0.0;           // saving against the plain tree on the rays it was fitted to, a share
-  double measured = 0.0;            // the same on probes
-};
-
 struct PlanOutcome {
   std::string asked;               // empty: another option says which tree
   std::string reason;              // why there is no plan; empty where there is one
@@ -54,8 +45,6 @@ struct PlanOutcome {
   // What is to be traced instead of the plain tree; null: that one.
   [[nodiscard]] const PlanTree* tree(std::size_t chosen_place) const;
 };
-
-enum class TreesWanted { kOneForAll, kOneEach };
 
 struct PlanTask {
   const cl::Context& context;

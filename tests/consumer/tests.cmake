@@ -2,7 +2,7 @@
 if(NOT GNOMON_SANITIZE AND GNOMON_INSTALL AND GNOMON_BUILD_PROGRAM)
   add_test(NAME consumer_test
            COMMAND bash ${CMAKE_CURRENT_SOURCE_DIR}/consumer/check.sh ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER})
-  set_tests_properties(consumer_test PROPERTIES LABELS device TIMEOUT 600 COST 110
+  set_tests_properties(consumer_test PROPERTIES LABELS device TIMEOUT 600 COST 40
                        ENVIRONMENT "${GNOMON_TEST_CACHE_ENVIRONMENT}")
 endif()
 add_test(NAME subdirectory_test

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "gnomon/tree/wide.h"
 #include "gnomon/tree/build_options.h"
+#include "gnomon/tree/wide.h"
 
 namespace gnomon::bench {
 

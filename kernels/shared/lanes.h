@@ -9,8 +9,13 @@
 
 #if defined(__OPENCL_VERSION__) && defined(GN_WGS) && GN_WGS == 1
 #define GN_HAS_LANES 1
-// Calls would pass lanes through memory.
+// Calls would pass lanes through memory. Only where the compiler is known to take it: oclgrind 21.10 does not know what it
+// leaves behind.
+#if defined(POCL_DEVICE_ADDRESS_BITS)
 #define GN_LANES_INLINE __attribute__((always_inline)) static inline
+#else
+#define GN_LANES_INLINE GN_INLINE
+#endif
 typedef float4 gn_lanes;
 typedef uint4 gn_lane_bits;
 typedef int4 gn_lane_mask;

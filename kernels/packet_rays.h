@@ -279,6 +279,7 @@ static inline int start_packet(GnPacket* p, __global const float8* rays, uint fi
     p->limit[g] = GN_MIN8(limit, (float16)FLT_MAX);
     p->nearest[g] = (float16)INFINITY;
     p->farthest[g] = (float16)INFINITY;
+    p->place[g] = (uint16)(0u);  // lanes are chosen from it, which a simulator takes for reading what nobody wrote
     p->active[g] = 65535u;
     p->found[g] = 0u;
     p->pending[g] = 0u;

@@ -123,8 +123,8 @@ const std::vector<Plant>& plants() {
       {"a measure that is a last bit off",
        "41",
        "thread",
-       {{"shared/elementary_math.h", "return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];",
-         "return a[2] * b[2] + a[1] * b[1] + a[0] * b[0];"}}},
+       {{"shared/elementary_math.h", "r = r * (1.5f - half_x * r * r);",
+         "r = r * (1.5f - half_x * (r * r));"}}},
   };
   return all;
 }

@@ -60,7 +60,8 @@ std::string table(const std::string& rows) {
       "), " + std::to_string(last.at("ratio").at("n").get<int>()) + " rounds, commit " +
       last.at("commit").get<std::string>() +
       ".\nRatios are median (min–max) of Embree's time over ours: above 1 we are faster. Rates move with "
-      "the machine, ratios far less.\n\n| scene | task | gnomon | against default | against ROBUST |\n"
+      "the machine, ratios less; those of builds most (host/notes/two-flavours.md).\n\n| scene | task | "
+      "gnomon | against default | against ROBUST |\n"
       "|---|---|---|---|---|\n";
   for (const auto& [key, line] : lines) {
     const auto ratio = [&](const char* mode) {

@@ -87,7 +87,9 @@ GN_INLINE gn_f32 gn_side_yaw_pitch(gn_f32 half_pitch, const gn_f32* from, const 
   gn_f32 share = 1.0f, left = gn_dot(d, d), sum = 0.0f, coarse = 0.0f, highest = gn_max(gn_abs(a->pitch), gn_abs(b->pitch));
   GnSight last = *a, last_but_one = *a, next[4];
   gn_u32 steps = 1u, step;
-  while (steps < 16u && left > near_level * near_level) {
+  // Between two ends beyond the same limit a side's pitch is beyond it too: tan(pitch) goes like a cosine of yaw.
+  const int beyond = gn_min(a->pitch, b->pitch) >= half_pitch || gn_max(a->pitch, b->pitch) <= -half_pitch;
+  while (!beyond && steps < 16u && left > near_level * near_level) {
     steps *= 2u;
     share *= 0.5f;
     left *= 0.25f;

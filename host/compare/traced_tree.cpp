@@ -11,8 +11,7 @@ bool traces_wide(const cl::DeviceInfo& device) {
 }
 
 TracedTree::TracedTree(const cl::Context& context, DeviceBvh tree, const Options& options,
-                       std::span<const float> slot_keys, BuildReport* report,
-                       std::span<const float> weights)
+                       std::span<const float> slot_keys, BuildReport* report, std::span<const float> weights)
     : context_(context), wide_flavour_(traces_wide(context.device())), tree_(std::move(tree)) {
   if (wide_flavour_) wide_ = collapse_device(context_, tree_, {}, report, slot_keys, weights);
   TraceOptions how;

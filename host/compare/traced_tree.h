@@ -22,8 +22,8 @@ class TracedTree {
     bool portable = false;  // OpenCL C alone, without the device compiler's own instructions
   };
 
-  // slot_keys, weights: for the wide tree (gnomon/tree/wide.h). Collapsing's stages go to `report`. The context
-  // must outlive it. Throws Error as collapse_device and Tracer do.
+  // slot_keys, weights: for the wide tree (gnomon/tree/wide.h). Collapsing's stages go to `report`. The
+  // context must outlive it. Throws Error as collapse_device and Tracer do.
   TracedTree(const cl::Context& context, DeviceBvh tree, const Options& options,
              std::span<const float> slot_keys = {}, BuildReport* report = nullptr,
              std::span<const float> weights = {});

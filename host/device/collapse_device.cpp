@@ -102,22 +102,23 @@ class Collapser {
     top(no_nodes_, no_nodes_, tasks, 0);
     const std::uint32_t task_count = numbers()[0];
     launch("collapse: count", "count_subtrees", task_count, tree_.nodes, forests_, tree_.leaf_triangles,
-           no_nodes_, no_nodes_, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_, keys_given_, tasks,
-           task_count);
+           no_nodes_, no_nodes_, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_,
+           keys_given_, tasks, task_count);
     DeviceWideBvh wide = allocate(tasks, task_count);
     top(wide.nodes, wide.blocks, tasks, 1);
     const cl::Buffer depth = context_.create_buffer("collapse_depth", sizeof(std::uint32_t));
     context_.fill(depth, 0);
     launch("collapse: emit", "emit_subtrees", task_count, tree_.nodes, forests_, tree_.leaf_triangles,
-           wide.nodes, wide.blocks, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_, keys_given_, tasks,
-           task_count, depth);
+           wide.nodes, wide.blocks, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_,
+           keys_given_, tasks, task_count, depth);
     wide.depth = std::max(numbers()[4], context_.download_values<std::uint32_t>(depth, 1).front());
     return wide;
   }
 
   void top(const cl::Buffer& nodes, const cl::Buffer& blocks, const cl::Buffer& tasks, std::uint32_t write) {
     launch("collapse: top", "emit_top", 1, tree_.nodes, forests_, tree_.leaf_triangles, nodes, blocks,
-           options_.cost_node, options_.cost_block, weights_, weights_given_, keys_, keys_given_, tasks, limit_, numbers_, write);
+           options_.cost_node, options_.cost_block, weights_, weights_given_, keys_, keys_given_, tasks,
+           limit_, numbers_, write);
   }
 
   // The nodes and blocks that the top and all subtrees have together.

@@ -63,8 +63,8 @@ class Optimiser {
     join();
     const std::uint32_t chunks = runs_of(nodes_, slot_run_);
     context_.fill(bins_, 0);
-    launch("weigh", "weigh_slots", chunks, slots_, above_, below_, cost_bins_, bins_, sums_, w(0), w(1), w(2), units_, nodes_,
-           slot_run_);
+    launch("weigh", "weigh_slots", chunks, slots_, above_, below_, cost_bins_, bins_, sums_, w(0), w(1), w(2),
+           units_, nodes_, slot_run_);
     TreeWeight weight;
     weight.bins = context_.download_values<std::uint32_t>(bins_, GN_MEASURE_BINS);
     const auto parts = context_.download_values<std::uint64_t>(sums_, chunks);

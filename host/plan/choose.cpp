@@ -130,8 +130,7 @@ class Chooser {
     } else {
       const Race race = run_race(candidate.tree.tree);
       trial.standing = race.standings[0];
-      trial.saving =
-          options_.prices.saved * rays_.expected * (trial.standing.baseline - trial.standing.cost);
+      trial.saving = options_.prices.saved * rays_.expected * (trial.standing.baseline - trial.standing.cost);
       const bool better = trial.standing.verdict == Verdict::kBetter;
       kept = better && trial.saving > trial.price;
       explain(race, trial, better, kept);

@@ -39,8 +39,8 @@ struct PlanPrices {
   double learn = 9.0;   // of learning an order of children, a triangle, beside its rays
   double trace = 3.0;   // of a box test of a plan's own: probes and samples are traced by the reference
   double byte = 0.05;   // of a tree that is held beside the baseline
-  // What a unit less is worth where rays to come are traced: a device takes 2 to 3 ns for one by now, and what
-  // counts save is not all saved in time (bench/results/ray-aware-time.md).
+  // What a unit less is worth where rays to come are traced: a device takes 2 to 3 ns for one by now, and
+  // what counts save is not all saved in time (bench/results/ray-aware-time.md).
   double saved = 0.2;
 };
 

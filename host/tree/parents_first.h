@@ -8,8 +8,8 @@
 
 namespace gnomon {
 
-// Nodes' numbers, each before its children's; the tree has nodes. Depth first: what is near in the order is near
-// in memory too, which in large trees is most of the time.
+// Nodes' numbers, each before its children's; the tree has nodes. Depth first: what is near in the order is
+// near in memory too, which in large trees is most of the time.
 inline std::vector<std::uint32_t> parents_first(const Bvh& bvh) {
   std::vector<std::uint32_t> order;
   order.reserve(bvh.nodes.size());

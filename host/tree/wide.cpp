@@ -74,7 +74,8 @@ class Collapse {
       const Node& node = bvh_.nodes[*it];
       const GnForest left = forest_of(node.first);
       const GnForest right = forest_of(node.first + 1);
-      forests_[(node.first - 1) / 2] = gn_inner_forest(gn_node_value(bvh_.nodes.data(), *it, &weights_), &left, &right, costs_);
+      forests_[(node.first - 1) / 2] =
+          gn_inner_forest(gn_node_value(bvh_.nodes.data(), *it, &weights_), &left, &right, costs_);
     }
   }
 
@@ -181,8 +182,9 @@ void check_node_weights(std::span<const float> weights, std::size_t nodes) {
   const auto bad = std::find_if(weights.begin(), weights.end(),
                                 [](float weight) { return !(weight >= 0.0F) || std::isinf(weight); });
   if (bad == weights.end()) return;
-  throw Error(ErrorCode::kInvalidArgument, "weight " + std::to_string(bad - weights.begin()) + " of a node is " +
-                                               std::to_string(*bad) + "; weights are finite and >= 0");
+  throw Error(ErrorCode::kInvalidArgument, "weight " + std::to_string(bad - weights.begin()) +
+                                               " of a node is " + std::to_string(*bad) +
+                                               "; weights are finite and >= 0");
 }
 
 void CollapseOptions::check() const {

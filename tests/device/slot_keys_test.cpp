@@ -1,5 +1,5 @@
-// Wide trees whose nodes have keys or weights, on the device: the reference's bytes, and the answers of any other
-// wide tree.
+// Wide trees whose nodes have keys or weights, on the device: the reference's bytes, and the answers of any
+// other wide tree.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -99,5 +99,6 @@ TEST_CASE("with weights the device's wide trees are the reference's too, and ans
   REQUIRE_THROWS_WITH(collapse_device(context(), tree, {}, nullptr, {}, std::span(weights).first(2)),
                       Catch::Contains("2 weights"));
   weights[3] = -1.0F;
-  REQUIRE_THROWS_WITH(collapse_device(context(), tree, {}, nullptr, {}, weights), Catch::Contains("weight 3"));
+  REQUIRE_THROWS_WITH(collapse_device(context(), tree, {}, nullptr, {}, weights),
+                      Catch::Contains("weight 3"));
 }

@@ -112,7 +112,8 @@ double cost_by_weights(const WideBvh& wide, const Bvh& bvh, std::span<const floa
       const auto same_box = [&](const Node& other) {
         bool same = true;
         for (int k = 0; k < 3; ++k)
-          same = same && other.lo[k] == node.planes[2 * k][slot] && other.hi[k] == node.planes[2 * k + 1][slot];
+          same =
+              same && other.lo[k] == node.planes[2 * k][slot] && other.hi[k] == node.planes[2 * k + 1][slot];
         return same;
       };
       const auto from = std::find_if(bvh.nodes.begin(), bvh.nodes.end(), same_box);
@@ -196,7 +197,8 @@ TEST_CASE("areas given as weights collapse as areas do, and bad weights are refu
                       Catch::Contains("3 weights"));
   for (const float bad : {-1.0F, NAN, INFINITY}) {
     areas[5] = bad;
-    REQUIRE_THROWS_WITH(gnomon::collapse_reference(bvh, triangles, {}, {}, areas), Catch::Contains("weight 5"));
+    REQUIRE_THROWS_WITH(gnomon::collapse_reference(bvh, triangles, {}, {}, areas),
+                        Catch::Contains("weight 5"));
   }
 }
 

@@ -112,6 +112,10 @@ TEST_CASE("a long run gives one row that says all about it, appended to a file")
     REQUIRE(outcome.status == 0);
     REQUIRE(json::parse(outcome.out).at("rows").size() == 1);
   }
+  // bench/results/schema.json says what such a row holds
+  const auto checked = run({"rows", "check", file});
+  CHECK(checked.err == "");
+  CHECK(checked.status == 0);
   const std::vector<json> rows = lines_of(file);
   REQUIRE(rows.size() == 2);
   const json& row = rows[0];

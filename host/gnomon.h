@@ -4,6 +4,8 @@
 
 #include "gnomon/areas/area_rays.h"
 #include "gnomon/areas/areas_from_scene.h"
+#include "gnomon/areas/detect.h"
+#include "gnomon/areas/detect_lights.h"
 #include "gnomon/areas/influence_area.h"
 #include "gnomon/areas/measure.h"
 #include "gnomon/areas/membership.h"

@@ -15,6 +15,7 @@ void add_validate_command(CLI::App& program, OutputOptions& output, Action& acti
 void add_render_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_compare_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_stability_command(CLI::App& program, OutputOptions& output, Action& action);
+void add_detect_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_plan_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_reproduce_command(CLI::App& program, OutputOptions& output, Action& action);
 void add_rows_command(CLI::App& program, OutputOptions& output, Action& action);

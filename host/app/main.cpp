@@ -93,6 +93,7 @@ int run(int argc, char** argv) {
   add_build_command(program, output, action);
   add_trace_command(program, output, action);
   add_plan_command(program, output, action);
+  add_detect_command(program, output, action);
   add_validate_command(program, output, action);
   add_render_command(program, output, action);
   add_compare_command(program, output, action);

@@ -57,6 +57,15 @@ std::string hint(const CLI::App& program) {
   return "see gnomon " + (chosen.empty() ? std::string() : chosen.front()->get_name() + " ") + "--help";
 }
 
+// What the parser found wrong; it has no words for a subcommand that there is not.
+std::string fault(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
+  if (argc < 2 || *argv[1] == '-' || !program.get_subcommands().empty()) return error.what();
+  std::string names;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  return "there is no subcommand \"" + std::string(argv[1]) + "\"; there are " + names;
+}
+
 int run_action(const Action& action, Console& console) {
   try {
     return action(console);
@@ -106,7 +115,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
       return program.exit(error);  // help
-    Console(output).error(std::string(error.what()) + "\n" + hint(program));
+    Console(output).error(fault(program, error, argc, argv) + "\n" + hint(program));
     return kUsage;
   }
   if (!action) {

@@ -298,6 +298,9 @@ TEST_CASE("what makes no sense is refused before anything is measured") {
   refused({"-o", page, "--rays", "sideways"}, 4, "anything else is a file of rays");
   refused({"-o", page, "--devices", "no such device"}, 3, "no such device");
   refused({"-o", page, "--rounds", "0"}, 2, "--rounds");
+  refused({"-o", page, "--rows", folder.file("nowhere/rows.jsonl")}, 1, "No such file");
+  std::filesystem::create_directory(folder.file("folder.html"));
+  refused({"-o", folder.file("folder.html")}, 1, "it is a folder");
   program::write_text(folder.file("r.json"), "not a report");
   refused({"-o", page}, 4, "not a report that can be gone on from");
 }

@@ -23,6 +23,7 @@ const char* const kFooter =
     "  gnomon trace gen:city:100k --rays bounce\n"
     "  gnomon validate gen:city:100k\n"
     "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png\n"
+    "  gnomon compare gen:atrium -o report.html     # which method to use, and why\n"
     "\n"
     "Exit status: 0 ok, 1 failure, 2 wrong usage, 3 no device, 4 bad scene, tree, ray or rows file, 5 out of "
     "memory,\n"

@@ -1,5 +1,5 @@
-// Where a box lies beside the window of an influence area: beyond it, inside it, or neither. Such tests are safe: what is
-// said to be beyond or inside is so, and the rest is measured. Feeds seen_measure.h.
+// Where a box lies beside the window of an influence area: beyond it, inside it, or neither. Such tests are
+// safe: what is said to be beyond or inside is so, and the rest is measured. Feeds seen_measure.h.
 #ifndef GNOMON_SHARED_FRAME_BOX_H
 #define GNOMON_SHARED_FRAME_BOX_H
 
@@ -13,7 +13,8 @@ typedef struct GnFrameBox {
 } GnFrameBox;
 
 GN_INLINE gn_f32 gn_reach(const gn_f32* direction, const gn_f32* half_size) {
-  return gn_abs(direction[0]) * half_size[0] + gn_abs(direction[1]) * half_size[1] + gn_abs(direction[2]) * half_size[2];
+  return gn_abs(direction[0]) * half_size[0] + gn_abs(direction[1]) * half_size[1] +
+         gn_abs(direction[2]) * half_size[2];
 }
 
 GN_INLINE GnFrameBox gn_frame_box(const GnMeasure* m, const gn_f32* centre, const gn_f32* half_size) {
@@ -27,7 +28,8 @@ GN_INLINE GnFrameBox gn_frame_box(const GnMeasure* m, const gn_f32* centre, cons
   return box;
 }
 
-// Whether all of the box lies above or below the cones that are a yaw and pitch window's upper and lower sides.
+// Whether all of the box lies above or below the cones that are a yaw and pitch window's upper and lower
+// sides.
 GN_INLINE int gn_is_beyond_pitch(const GnMeasure* m, const GnFrameBox* box) {
   const gn_f32 height = gn_abs(box->at[1]) - box->reach[1];
   const gn_f32 x = gn_abs(box->at[0]) + box->reach[0], z = gn_abs(box->at[2]) + box->reach[2];
@@ -37,12 +39,13 @@ GN_INLINE int gn_is_beyond_pitch(const GnMeasure* m, const GnFrameBox* box) {
 // Whether all of it lies between these cones.
 GN_INLINE int gn_is_within_pitch(const GnMeasure* m, const GnFrameBox* box) {
   const gn_f32 height = gn_abs(box->at[1]) + box->reach[1];
-  const gn_f32 x = gn_max(gn_abs(box->at[0]) - box->reach[0], 0.0f), z = gn_max(box->at[2] - box->reach[2], 0.0f);
+  const gn_f32 x = gn_max(gn_abs(box->at[0]) - box->reach[0], 0.0f),
+               z = gn_max(box->at[2] - box->reach[2], 0.0f);
   return height * height <= m->half_height * m->half_height * (x * x + z * z);
 }
 
-// Whether no ray can meet the box: all of it lies beyond one side of the window, or behind where rays begin. centre is
-// seen from the origin; box: the same box's bounds in the frame.
+// Whether no ray can meet the box: all of it lies beyond one side of the window, or behind where rays begin.
+// centre is seen from the origin; box: the same box's bounds in the frame.
 GN_INLINE int gn_is_out_of_sight(const GnMeasure* m, const gn_f32* centre, const gn_f32* half_size,
                                  const GnFrameBox* box) {
   const int parallel = gn_kind_of(m) == GN_MEASURE_WINDOW;
@@ -50,7 +53,8 @@ GN_INLINE int gn_is_out_of_sight(const GnMeasure* m, const gn_f32* centre, const
   if (!m->culled) return 0;
   if (box->at[2] + box->reach[2] < m->near_distance) return 1;
   if (parallel) {
-    return gn_abs(box->at[0]) - box->reach[0] > m->half_width || gn_abs(box->at[1]) - box->reach[1] > m->half_height;
+    return gn_abs(box->at[0]) - box->reach[0] > m->half_width ||
+           gn_abs(box->at[1]) - box->reach[1] > m->half_height;
   }
   if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH && gn_is_beyond_pitch(m, box)) return 1;
   for (side = 0u; side < (gn_kind_of(m) == GN_MEASURE_YAW_PITCH ? 2u : 4u); ++side) {

@@ -79,9 +79,10 @@ GN_INLINE GnFrameBox gn_bounds_of(const GnOutline* outline) {
   return box;
 }
 
-// Lowest and highest place of the box beside each side of the window, planes 1 to 4: all four by one formula, which
-// compilers take at once.
-GN_INLINE void gn_beside_window(const GnMeasure* m, const GnOutline* outline, gn_f32 unit, gn_f32* lowest, gn_f32* highest) {
+// Lowest and highest place of the box beside each side of the window, planes 1 to 4: all four by one formula,
+// which compilers take at once.
+GN_INLINE void gn_beside_window(const GnMeasure* m, const GnOutline* outline, gn_f32 unit, gn_f32* lowest,
+                                gn_f32* highest) {
   const gn_f32 aside[4] = {-1.0f, 1.0f, 0.0f, 0.0f}, above[4] = {0.0f, 0.0f, -1.0f, 1.0f};
   const int parallel = gn_kind_of(m) == GN_MEASURE_WINDOW;
   gn_u32 i, k;
@@ -137,10 +138,10 @@ GN_INLINE gn_f32 gn_faces_measure(const GnMeasure* m, const GnOutline* outline, 
   return sum;
 }
 
-// Whether few steps serve a box in yaw and pitch that no plane cuts: neither do the window's upper and lower sides, and it
-// is not large. As near as its outline's curves are, for a third of the work.
-GN_INLINE int gn_few_steps_serve(const GnMeasure* m, const GnFrameBox* box, const gn_f32* lo, const gn_f32* hi,
-                                 gn_f32 unit) {
+// Whether few steps serve a box in yaw and pitch that no plane cuts: neither do the window's upper and lower
+// sides, and it is not large. As near as its outline's curves are, for a third of the work.
+GN_INLINE int gn_few_steps_serve(const GnMeasure* m, const GnFrameBox* box, const gn_f32* lo,
+                                 const gn_f32* hi, gn_f32 unit) {
   const gn_f32 dx = (hi[0] - lo[0]) * unit, dy = (hi[1] - lo[1]) * unit, dz = (hi[2] - lo[2]) * unit;
   const gn_f32 distance = box->at[0] * box->at[0] + box->at[2] * box->at[2];
   if (m->culled && !gn_is_within_pitch(m, box)) return 0;
@@ -220,7 +221,8 @@ GN_INLINE int gn_seen_how(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi
   box = gn_frame_box(m, centre, half_size);
   if (gn_is_out_of_sight(m, centre, half_size, &box)) return GN_SEEN_NOTHING;
   if (gn_is_seen_whole(m, &box)) return steps;
-  return gn_kind_of(m) == GN_MEASURE_WINDOW && box.at[2] - box.reach[2] >= m->near_distance ? GN_SEEN_CUT : GN_SEEN_PRECISE;
+  return gn_kind_of(m) == GN_MEASURE_WINDOW && box.at[2] - box.reach[2] >= m->near_distance ? GN_SEEN_CUT
+                                                                                            : GN_SEEN_PRECISE;
 }
 
 // Of a box in each lane. how: GN_SEEN_ONE_STEP, GN_SEEN_FEW_STEPS, GN_SEEN_WHOLE or GN_SEEN_CUT.

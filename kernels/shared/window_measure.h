@@ -1,14 +1,15 @@
-// The measure of boxes as parallel rays through a window see them, all of the box ahead of where the rays begin, in every
-// lane at once: nothing outside the window, the area across the rays inside it, and what the window leaves of the outline
-// in between. Not for boxes that the window's own plane cuts (seen_measure.h). Feeds seen_measure.h.
+// The measure of boxes as parallel rays through a window see them, all of the box ahead of where the rays
+// begin, in every lane at once: nothing outside the window, the area across the rays inside it, and what the
+// window leaves of the outline in between. Not for boxes that the window's own plane cuts (seen_measure.h).
+// Feeds seen_measure.h.
 #ifndef GNOMON_SHARED_WINDOW_MEASURE_H
 #define GNOMON_SHARED_WINDOW_MEASURE_H
 
 #include "build_layout.h"
 #include "elementary_math.h"
 
-// A box in the window's plane: what its two faces across each axis add to a corner, first the one that rays enter by. In
-// this order every box has the same six corners on its outline.
+// A box in the window's plane: what its two faces across each axis add to a corner, first the one that rays
+// enter by. In this order every box has the same six corners on its outline.
 typedef struct GnFlatBox {
   gn_lanes x[3][2];
   gn_lanes y[3][2];
@@ -35,19 +36,23 @@ GN_INLINE gn_lanes gn_lanes_within(gn_lanes x, gn_lanes low, gn_lanes high) {
   return gn_lanes_max(gn_lanes_min(x, high), low);
 }
 
-// Area between a line and y = limit where the line is above it. low, high: its lowest and highest y; run: its extent in x.
-GN_LANES_INLINE gn_lanes gn_areas_above(gn_lanes low, gn_lanes high, gn_lanes limit, gn_lanes run, gn_f32 inverse) {
+// Area between a line and y = limit where the line is above it. low, high: its lowest and highest y; run: its
+// extent in x.
+GN_LANES_INLINE gn_lanes gn_areas_above(gn_lanes low, gn_lanes high, gn_lanes limit, gn_lanes run,
+                                        gn_f32 inverse) {
   const gn_lanes p = gn_lanes_max(high - limit, GN_ALL(0.0f)), q = gn_lanes_max(low - limit, GN_ALL(0.0f));
   const gn_lanes above = gn_lanes_min((p - q) * inverse, run);
   return 0.5f * (p + q) * (low >= limit ? run : above);
 }
 
-// Area between the edge from a to b and y = 0, cut to the window: x in [-half_width, half_width], y in [bottom, top].
-// Positive where x grows. sign: of b's x less a's.
-GN_LANES_INLINE gn_lanes gn_edge_areas(const GnFlatEdge* edge, gn_f32 sign, gn_lanes ax, gn_lanes ay, gn_lanes bx,
-                                       gn_lanes by, gn_lanes half_width, gn_lanes bottom, gn_lanes top) {
+// Area between the edge from a to b and y = 0, cut to the window: x in [-half_width, half_width], y in
+// [bottom, top]. Positive where x grows. sign: of b's x less a's.
+GN_LANES_INLINE gn_lanes gn_edge_areas(const GnFlatEdge* edge, gn_f32 sign, gn_lanes ax, gn_lanes ay,
+                                       gn_lanes bx, gn_lanes by, gn_lanes half_width, gn_lanes bottom,
+                                       gn_lanes top) {
   const gn_lanes lowest = gn_lanes_min(ay, by), highest = gn_lanes_max(ay, by);
-  const gn_lanes from = gn_lanes_within(ax, -half_width, half_width), to = gn_lanes_within(bx, -half_width, half_width);
+  const gn_lanes from = gn_lanes_within(ax, -half_width, half_width),
+                 to = gn_lanes_within(bx, -half_width, half_width);
   const gn_lanes run = sign * (to - from);
   // A steep edge's slope times what x rounds by may be any number.
   const gn_lanes y_from = gn_lanes_within(ay + edge->slope * (from - ax), lowest, highest);
@@ -58,7 +63,8 @@ GN_LANES_INLINE gn_lanes gn_edge_areas(const GnFlatEdge* edge, gn_f32 sign, gn_l
   return sign * (0.5f * (low + high) * run - over + under);
 }
 
-// What of the outline is inside the window. Heights are taken from one corner's: those of small boxes keep their digits.
+// What of the outline is inside the window. Heights are taken from one corner's: those of small boxes keep
+// their digits.
 GN_LANES_INLINE gn_lanes gn_cut_outlines(const GnMeasure* m, const GnFlatBox* box) {
   const gn_lanes half_width = GN_ALL(m->half_width), half_height = GN_ALL(m->half_height);
   const GnFlatEdge edges[3] = {gn_flat_edge(m, 0u), gn_flat_edge(m, 1u), gn_flat_edge(m, 2u)};

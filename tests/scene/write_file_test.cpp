@@ -107,5 +107,6 @@ TEST_CASE("what cannot be written says why, and what was there is untouched") {
   CHECK(folder.files() == 1);
   // Only to add to: a writer that is at fault would replace it.
   if (fs::is_character_file("/dev/full"))
-    CHECK_THAT(reason([&] { gnomon::append_to_file("/dev/full", bytes_of("x")); }), Contains("No space left"));
+    CHECK_THAT(reason([&] { gnomon::append_to_file("/dev/full", bytes_of("x")); }),
+               Contains("No space left"));
 }

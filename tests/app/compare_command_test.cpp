@@ -1,5 +1,6 @@
 // gnomon compare from end to end on tiny scenes: rows, page, time, Ctrl-C and going on.
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -219,6 +220,42 @@ TEST_CASE("where time is short less is measured, and the page says what was left
   REQUIRE_THAT(program::read_text(folder.file("r.html")),
                Contains("What was left out") && Contains("the budget is"));
   REQUIRE_THAT(outcome.err, Contains("left out: "));
+}
+
+TEST_CASE("what a budget leaves goes to what it cut short, and rows stay one of each, in order") {
+  const Folder folder;
+  // More rays than any time here is enough for.
+  const auto begun = std::chrono::steady_clock::now();
+  const auto outcome = run(command(folder.file("r.html"), {"--time", "6s"}, "3", "30M"));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  CHECK(took.count() < 12.0);  // the kernels may have to be compiled
+  const json report = read_report(folder);
+  std::vector<std::string> order;
+  std::map<std::string, std::uint64_t> counts;
+  for (const std::string task : {"trace", "accuracy"}) {
+    std::set<std::pair<std::string, std::string>> seen;
+    order.clear();
+    for (const json& row : rows_of(report, task)) {
+      const std::string kind = row.at("rays");
+      CHECK(seen.emplace(kind, row.at("method")).second);
+      if (order.empty() || order.back() != kind) order.push_back(kind);
+      if (task == "trace") counts[kind] = row.at("ray_count");
+    }
+    CHECK(order == std::vector<std::string>{"primary", "shadow", "light"});
+  }
+  std::map<std::string, int> said;
+  for (const json& row : rows_of(report, "left_out")) {
+    const std::string what = row.at("what");
+    const std::string reason = row.at("reason");
+    if (!what.starts_with("trace ") || reason.find("rays instead of 30000000") == std::string::npos) continue;
+    ++said[what.substr(6)];
+    // Of those that were drawn: shadow rays are those of points that were met.
+    CHECK(std::stoull(reason) >= counts.at(what.substr(6)));
+    CHECK(counts.at(what.substr(6)) * 2 > std::stoull(reason));
+  }
+  CHECK(said == std::map<std::string, int>{{"primary", 1}, {"shadow", 1}, {"light", 1}});
 }
 
 TEST_CASE("a scene from a file is made smaller by leaving triangles out, and the page says so") {

@@ -111,6 +111,30 @@ TEST_CASE("a figure moved when its ranges have no value in common") {
   CHECK(slower.at("moves").at(0).at("verdict") == "worse");
 }
 
+TEST_CASE("a figure that one side lacks moved, and one of a single round has no spread to judge by") {
+  Files files;
+  const std::string figure = "gnomon_mrays_per_s";
+  json none = trace_row("primary", 10);
+  none[figure] = nullptr;
+  for (const auto& [before, after] :
+       {std::pair{trace_row("primary", 10), none}, {none, trace_row("primary", 10)}}) {
+    const json moved = files.diff({before}, {after});
+    REQUIRE(moved.at("moves").size() == 1);
+    CHECK(moved.at("moves")[0].at("figure") == figure);
+    CHECK(moved.at("moves")[0].at("ratio").is_null());
+  }
+  CHECK(run({"rows", "diff", files.put("a.jsonl", {none}), files.put("b.jsonl", {trace_row("primary", 10)})})
+            .status == 7);
+  CHECK(files.diff({none}, {none}).at("same") == true);
+  json once = trace_row("primary", 20);
+  once[figure]["n"] = 1;
+  const json unjudged = files.diff({trace_row("primary", 10)}, {once});
+  CHECK(unjudged.at("same") == true);
+  CHECK(unjudged.at("figures") == 3);
+  CHECK(unjudged.at("not_judged").get<int>() ==
+        files.diff({trace_row("primary", 10)}, {trace_row("primary", 10)}).at("not_judged").get<int>() + 1);
+}
+
 TEST_CASE("a mean moved when it is more than three standard errors of the difference away") {
   Files files;
   CHECK(files.diff({prediction_row(5, 0.3)}, {prediction_row(6.4, 0.4)}).at("same") == true);  // 2.8 of 0.5

@@ -1,5 +1,7 @@
 // The contests of a run: all builds, and all methods on the rays of a kind; and these again where time is
 // left.
+#include <cmath>
+
 #include "gnomon/base/stats.h"
 #include "gnomon/compare/contest.h"
 #include "gnomon/compare/run_steps.h"
@@ -13,6 +15,19 @@ double traced_once(RunState& run, const Batch& batch) {
   return (wall_now() - begun) / static_cast<double>(batch.rays.size());
 }
 
+// How often each round traces the batch: a turn is to take long enough for what disturbs it to even out,
+// where there is time for that.
+std::uint64_t fitting_passes(RunState& run, const Batch& batch, double until) {
+  constexpr double kTurn = 0.05;  // seconds
+  const double begun = wall_now();
+  run.baseline->trace(batch);
+  if (wall_now() - begun >= kTurn) return 1;
+  const double all = traced_once(run, batch) * static_cast<double>(batch.rays.size());
+  const double wished = std::ceil(kTurn * static_cast<double>(run.entered.size()) / all);
+  const double fit = std::floor(0.9 * (until - wall_now()) / (all * (run.options.rounds + 1)));
+  return static_cast<std::uint64_t>(std::max(1.0, std::min(wished, fit)));
+}
+
 void say_who_sat_out(RunState& run, const std::string& step, const std::vector<Contestant>& contest) {
   for (std::size_t i = 0; i < contest.size(); ++i) {
     if (contest[i].rounds.wall_s.size() < contest.front().rounds.wall_s.size())
@@ -21,13 +36,16 @@ void say_who_sat_out(RunState& run, const std::string& step, const std::vector<C
   }
 }
 
-TraceRow trace_row(Entered& entered, const Batch& batch, const Rounds& rounds) {
+TraceRow trace_row(Entered& entered, const Batch& batch, std::uint64_t passes, const Rounds& rounds) {
   TraceRow row;
   row.method = entered.method->facts.name;
   row.kind = batch.kind;
   row.any_hit = batch.any_hit;
   row.rays = batch.rays.size();
+  row.passes = passes;
   row.rounds = rounds;
+  for (std::vector<double>* seconds : {&row.rounds.wall_s, &row.rounds.cpu_s})
+    for (double& one : *seconds) one /= static_cast<double>(passes);
   if (const auto work = entered.entrant->work(batch)) {
     row.counted = true;
     row.boxes_per_ray = work->boxes_per_ray;
@@ -104,9 +122,13 @@ void time_traces(RunState& run, const std::string& kind, double until) {
     run.leave_out(
         "", step,
         std::to_string(count) + " rays instead of " + std::to_string(run.options.ray_count) + run.budget());
+  const std::uint64_t passes = fitting_passes(run, batch, until);
   std::vector<Contestant> contest;
   for (Entered& entered : run.entered)
-    contest.push_back({[&entered, &batch] { entered.entrant->trace(batch); }, {}});
+    contest.push_back({[&entered, &batch, passes] {
+                         for (std::uint64_t i = 0; i < passes; ++i) entered.entrant->trace(batch);
+                       },
+                       {}});
   run_contest(contest, run.options.rounds, until, wall_now,
               [&](int done, int most) { run.tell(step, static_cast<double>(done) / most); });
   run.say_rounds(step, contest.front().rounds.wall_s.size());
@@ -116,7 +138,7 @@ void time_traces(RunState& run, const std::string& kind, double until) {
     run.cut_kinds.push_back(kind);
   std::vector<TraceRow> rows;
   for (std::size_t i = 0; i < run.entered.size(); ++i) {
-    rows.push_back(trace_row(run.entered[i], batch, contest[i].rounds));
+    rows.push_back(trace_row(run.entered[i], batch, passes, contest[i].rounds));
     run.tell(step, 1.0);
   }
   run.report.traces.insert(run.report.traces.end(), rows.begin(), rows.end());

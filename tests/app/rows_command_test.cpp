@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
 
 #include "run_program.h"
 
@@ -113,26 +115,36 @@ TEST_CASE("a figure moved when its ranges have no value in common") {
 
 TEST_CASE("a figure that one side lacks moved, and one of a single round has no spread to judge by") {
   Files files;
-  const std::string figure = "gnomon_mrays_per_s";
-  json none = trace_row("primary", 10);
-  none[figure] = nullptr;
-  for (const auto& [before, after] :
-       {std::pair{trace_row("primary", 10), none}, {none, trace_row("primary", 10)}}) {
+  const auto traced = [](const json& ratio) {
+    std::istringstream lines(program::read_text(std::string(GNOMON_RESULTS_FOLDER) + "/compare.jsonl"));
+    for (std::string line; std::getline(lines, line);) {
+      json row = json::parse(line);
+      if (row.at("task") != "trace") continue;
+      row["ratio"] = ratio;
+      return row;
+    }
+    throw std::runtime_error("no such row is stored");
+  };
+  const json many = traced(spread(2, 1.9, 2.1));
+  const json none = traced(nullptr);
+  json once = traced(spread(9, 9, 9));
+  once["ratio"]["n"] = 1;
+  const json same = files.diff({many}, {many});
+  CHECK(same.at("same") == true);
+  for (const auto& [before, after] : {std::pair{many, none}, std::pair{none, many}}) {
     const json moved = files.diff({before}, {after});
     REQUIRE(moved.at("moves").size() == 1);
-    CHECK(moved.at("moves")[0].at("figure") == figure);
+    CHECK(moved.at("moves")[0].at("figure") == "ratio");
     CHECK(moved.at("moves")[0].at("ratio").is_null());
+    CHECK(run({"rows", "diff", files.put("a.jsonl", {before}), files.put("b.jsonl", {after})}).status == 7);
   }
-  CHECK(run({"rows", "diff", files.put("a.jsonl", {none}), files.put("b.jsonl", {trace_row("primary", 10)})})
-            .status == 7);
   CHECK(files.diff({none}, {none}).at("same") == true);
-  json once = trace_row("primary", 20);
-  once[figure]["n"] = 1;
-  const json unjudged = files.diff({trace_row("primary", 10)}, {once});
-  CHECK(unjudged.at("same") == true);
-  CHECK(unjudged.at("figures") == 3);
-  CHECK(unjudged.at("not_judged").get<int>() ==
-        files.diff({trace_row("primary", 10)}, {trace_row("primary", 10)}).at("not_judged").get<int>() + 1);
+  for (const auto& [before, after] : {std::pair{many, once}, std::pair{once, many}}) {
+    const json unjudged = files.diff({before}, {after});
+    CHECK(unjudged.at("same") == true);
+    CHECK(unjudged.at("not_judged").get<int>() == same.at("not_judged").get<int>() + 1);
+    CHECK(unjudged.at("figures").get<int>() == same.at("figures").get<int>() - 1);
+  }
 }
 
 TEST_CASE("a mean moved when it is more than three standard errors of the difference away") {

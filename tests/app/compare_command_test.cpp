@@ -50,8 +50,10 @@ json read_report(const Folder& folder) {
 
 TEST_CASE("compare measures every method on the same rays and writes page, rows and charts") {
   const Folder folder;
+  const auto begun = std::chrono::steady_clock::now();
   const auto outcome =
       run(command(folder.file("r.html"), {"--json", "--quiet", "--rows", folder.file("r.jsonl")}));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   CAPTURE(outcome.out, outcome.err);
   REQUIRE(outcome.status == 0);
   const json document = json::parse(outcome.out);
@@ -78,14 +80,18 @@ TEST_CASE("compare measures every method on the same rays and writes page, rows 
 
   const auto traces = rows_of(report, "trace");
   REQUIRE(traces.size() == methods.size() * 3);
+  double in_rounds = 0.0;
   for (const json& row : traces) {
     CAPTURE(row.dump());
+    REQUIRE(row.at("passes") > 1);  // so few rays
+    for (const double seconds : row.at("wall_s")) in_rounds += seconds * row.at("passes").get<double>();
     REQUIRE(row.at("wall_s").size() == 3);
     REQUIRE(row.at("ray_count").get<int>() > 200);
     if (row.at("method").get<std::string>().starts_with("embree")) continue;
     REQUIRE(row.at("boxes_per_ray") > 1.0);
     REQUIRE(row.at("triangles_per_ray") > 0.0);
   }
+  REQUIRE(in_rounds < took.count());
   // Trees differ, answers do not.
   for (const json& row : rows_of(report, "accuracy")) {
     CAPTURE(row.dump());

@@ -207,6 +207,11 @@ TEST_CASE("the table names what tells rows apart, both figures and the ratio") {
   CHECK_THAT(outcome.out, Contains("2 measurements in both, 8 figures compared, 1 moved"));
   CHECK_THAT(outcome.out, Contains("spine, primary") && Contains("10 (9 to 11, n 7)") && Contains("2.000") &&
                               Contains("better"));
+  const auto apart =
+      run({"rows", "diff", files.put("a.jsonl", {trace_row("primary", 10), trace_row("shadow", 3)}),
+           files.put("b.jsonl", {trace_row("primary", 10), trace_row("bounce", 3)})});
+  CHECK_THAT(apart.out,
+             Contains("only before:\n  spine, shadow\n") && Contains("only after:\n  spine, bounce\n"));
 }
 
 TEST_CASE("what is no file of rows exits 4 and names file, line and fault") {

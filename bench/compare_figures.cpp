@@ -127,6 +127,7 @@ std::string readme_section(const std::vector<Report>& reports) {
   for (const Report& report : reports)
     out += (out.empty() ? "> " : ">\n> ") + advise(report, report.devices.front()).use + "\n";
   return out + "\nTimes as fast as " + kBaseline +
+         (reports.front().clock == "cpu" ? ", by processor time" : ", by waiting time") +
          ", in rounds that took turns: median (least–greatest).\n\n" + glance_table(reports) +
          "\n![Speed of tracing by method, with its spread](bench/pictures/compare-gain.svg)\n\n"
          "All methods, by kind of rays, with their memory: [methods](bench/results/compare.md). PoCL, its "
@@ -140,7 +141,8 @@ std::string methods_page(const std::vector<Report>& reports) {
       "What `gnomon compare` says of scenes, and every method. Times as fast as " +
       std::string(kBaseline) +
       ", round by round: median\n(least–greatest); memory over its. Methods are explained on every page that "
-      "`gnomon compare` writes.\n";
+      "`gnomon compare` writes. A command says whether waiting time (`--clock wall`) or processor time "
+      "counts.\n";
   for (const Report& report : reports) {
     const DeviceReport& device = report.devices.front();
     const Advice advice = advise(report, device);

@@ -243,6 +243,8 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
     sweep_three_axes(measure, GN_SEEN_FEW_STEPS, w, bins, counts, bin_count, node->count, best_of_axis);
   } else if (steps && how == GN_SEEN_WHOLE) {
     sweep_three_axes(measure, GN_SEEN_WHOLE, w, bins, counts, bin_count, node->count, best_of_axis);
+  } else if (gn_kind_of(measure) == GN_MEASURE_WINDOW && how == GN_SEEN_CUT) {
+    sweep_three_axes(measure, GN_SEEN_CUT, w, bins, counts, bin_count, node->count, best_of_axis);
   } else {
     turn_bins(bins);
     sweep_axes(heuristic, how, node, bins, counts, bin_count, best_of_axis);

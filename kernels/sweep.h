@@ -53,10 +53,11 @@ GN_LANES_INLINE float4 measures_of(const GnMeasure* measure, const int how, cons
   return measure->area_scale * gn_lane_measures(measure, how, &box) + linear;
 }
 
-// The cheapest split of every axis, to best_of_axis; axis == GN_NONE where there is none: on an axis without extent all are
-// in the first bin, and no plane divides them. how: GN_SEEN_NOTHING where the face weights w measure all, else
-// GN_SEEN_ONE_STEP, GN_SEEN_FEW_STEPS or GN_SEEN_WHOLE. w: as gn_linear_part gives it. bin_count: at most GN_BINS. Steps
-// are not taken for bins that are empty on all axes, as small nodes' are.
+// The cheapest split of every axis, to best_of_axis; axis == GN_NONE where there is none: on an axis without
+// extent all are in the first bin, and no plane divides them. how: GN_SEEN_NOTHING where the face weights w
+// measure all, else GN_SEEN_ONE_STEP, GN_SEEN_FEW_STEPS, GN_SEEN_WHOLE or GN_SEEN_CUT. w: as gn_linear_part
+// gives it. bin_count: at most GN_BINS. Steps are not taken for bins that are empty on all axes, as small
+// nodes' are.
 GN_LANES_INLINE void sweep_three_axes(const GnMeasure* measure, const int how, const float* w, __local const GnBin* bins,
                                       __local const uint* counts, uint bin_count, uint count,
                                       __local GnSplit* best_of_axis) {

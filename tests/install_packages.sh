@@ -11,7 +11,7 @@ declare -A packages=(
   [build]="g++ cmake ninja-build pkg-config ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd libtinygltf-dev
     libtinyobjloader-dev libcli11-dev nlohmann-json3-dev libstb-dev libxxhash-dev libglm-dev"
   [tests]="catch2 libboost-dev mesa-opencl-icd oclgrind help2man jq"
-  [bench]="libembree-dev libbenchmark-dev"
+  [bench]="libembree-dev"
   [demo]="jq"
 )
 

@@ -11,6 +11,7 @@
 #include "exit_status.h"
 #include "gnomon/compare/across.h"
 #include "gnomon/compare/analysis.h"
+#include "gnomon/scene/write_file.h"
 #include "numbers.h"
 #include "plan_rays.h"
 #include "report_files.h"
@@ -116,6 +117,7 @@ class Comparison {
     options_.run.methods = options_.methods;
     options_.run.seconds = seconds_from(options_.time);
     options_.run.check();
+    if (!options_.rows.empty()) append_to_file(options_.rows, {});  // before all is measured, not after
     const auto known = cl::list_devices();
     if (options_.devices.empty()) devices_.push_back(cl::choose_device(known, ""));
     for (const std::string& choice : options_.devices) devices_.push_back(cl::choose_device(known, choice));

@@ -23,6 +23,7 @@ const char* const kFooter =
     "  gnomon trace gen:city:100k --rays bounce\n"
     "  gnomon validate gen:city:100k\n"
     "  gnomon render gen:atrium -o atrium.png --heat-map boxes.png\n"
+    "  gnomon compare gen:atrium -o report.html     # which method to use, and why\n"
     "\n"
     "Exit status: 0 ok, 1 failure, 2 wrong usage, 3 no device, 4 bad scene, tree, ray or rows file, 5 out of "
     "memory,\n"
@@ -55,6 +56,15 @@ int status_of(ErrorCode code) {
 std::string hint(const CLI::App& program) {
   const auto chosen = program.get_subcommands();
   return "see gnomon " + (chosen.empty() ? std::string() : chosen.front()->get_name() + " ") + "--help";
+}
+
+// What the parser found wrong; it has no words for a subcommand that there is not.
+std::string fault(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
+  if (argc < 2 || *argv[1] == '-' || !program.get_subcommands().empty()) return error.what();
+  std::string names;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  return "there is no subcommand \"" + std::string(argv[1]) + "\"; there are " + names;
 }
 
 int run_action(const Action& action, Console& console) {
@@ -107,7 +117,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
       return program.exit(error);  // help
-    Console(output).error(std::string(error.what()) + "\n" + hint(program));
+    Console(output).error(fault(program, error, argc, argv) + "\n" + hint(program));
     return kUsage;
   }
   if (!action) {

@@ -32,6 +32,7 @@ ReportFiles::ReportFiles(const std::string& page) : page_(page) {
   const fs::path folder = page_.parent_path();
   if (!folder.empty() && !fs::is_directory(folder))
     throw Error(ErrorCode::kIo, "there is no folder " + folder.string() + " to write " + page + " in");
+  if (fs::is_directory(page_)) throw Error(ErrorCode::kIo, "cannot write " + page + ": it is a folder");
 }
 
 compare::Report ReportFiles::read_rows() const {
@@ -52,9 +53,8 @@ std::size_t ReportFiles::write_all(const compare::Report& report) const {
 }
 
 void append_rows(const std::string& file, const compare::Report& report) {
-  std::ofstream out(file, std::ios::binary | std::ios::app);
-  out << to_rows_text(report);
-  if (!out.flush()) throw Error(ErrorCode::kIo, "cannot write " + file + "; is its folder there?");
+  const std::string text = to_rows_text(report);
+  append_to_file(file, std::as_bytes(std::span(text)));
 }
 
 fs::path ReportFiles::with(const std::string& ending) const {

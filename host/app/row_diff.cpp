@@ -92,6 +92,9 @@ class Comparison {
     row_.moves.push_back(std::move(move));
   }
 
+  // One round has a value and no spread.
+  static bool taken_once(const RowJson& figure) { return figure.is_object() && figure.value("n", 2) < 2; }
+
   // Parts of objects each by itself.
   void exact(const RowField& field, const std::string& name, const RowJson& before, const RowJson& after) {
     if (before.is_object() && after.is_object()) {
@@ -109,7 +112,15 @@ class Comparison {
   }
 
   void spread(const RowField& field, const RowJson& before, const RowJson& after) {
+    if (taken_once(before) || taken_once(after)) {
+      diff_.single += 1;
+      return;
+    }
     diff_.figures += 1;
+    if (before.is_null() || after.is_null()) {
+      add(field.name, field, before, after, std::nullopt, std::nullopt);
+      return;
+    }
     const char* const middle = field.type == "mean" ? "mean" : "median";
     const double from = before.at(middle);
     const double to = after.at(middle);

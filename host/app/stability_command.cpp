@@ -1,7 +1,7 @@
 // gnomon stability: the catalogue of hard cases, or a long run, against the oracle.
 #include <algorithm>
-#include <fstream>
 #include <memory>
+#include <span>
 #include <sstream>
 
 #include "commands.h"
@@ -9,6 +9,7 @@
 #include "document.h"
 #include "exit_status.h"
 #include "gnomon/base/stats.h"
+#include "gnomon/scene/write_file.h"
 #include "gnomon/stability/cases.h"
 #include "interrupt.h"
 #include "numbers.h"
@@ -63,9 +64,7 @@ void append_rows(const std::string& file, const std::vector<Json>& rows) {
   if (file.empty()) return;
   std::string text;
   for (const Json& row : rows) text += row.dump() + "\n";
-  std::ofstream out(file, std::ios::app);
-  if (!(out << text << std::flush))
-    throw Error(ErrorCode::kIo, "cannot write " + file + "; is its folder there?");
+  append_to_file(file, std::as_bytes(std::span(text)));
 }
 
 Json start_row(const char* kind, const cl::Context& context, const Options& options) {

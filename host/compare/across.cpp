@@ -67,16 +67,15 @@ class Across {
 
   void trace(const std::string& kind, double deadline) const {
     tell(kind, 0.0);
-    std::vector<Batch> few = batches(kind, kMinRays);
-    if (few.front().rays.empty()) return;
-    for (std::size_t i = 0; i < entrants_.size(); ++i) entrants_[i]->trace(few[i]);  // warms up
-    const double begun = wall_now();
-    for (std::size_t i = 0; i < entrants_.size(); ++i) entrants_[i]->trace(few[i]);
-    const double per_ray = (wall_now() - begun) / static_cast<double>(few.front().rays.size());
-    const double fits = std::max(0.0, deadline - wall_now()) / (per_ray * (options_.rounds + 1));
-    std::uint64_t count = options_.ray_count;
-    while (count > kMinRays && static_cast<double>(count) > fits) count /= 2;
-    const std::vector<Batch> rays = batches(kind, std::max(count, std::min(kMinRays, options_.ray_count)));
+    if (batches(kind, kLeastRays).front().rays.empty()) return;
+    const auto seconds_per_ray = [&](std::uint64_t count) {
+      const std::vector<Batch> some = batches(kind, count);
+      const double begun = wall_now();
+      for (std::size_t i = 0; i < entrants_.size(); ++i) entrants_[i]->trace(some[i]);
+      return (wall_now() - begun) / static_cast<double>(some.front().rays.size());
+    };
+    const std::vector<Batch> rays =
+        batches(kind, fitting_rays(options_.ray_count, options_.rounds, deadline, wall_now, seconds_per_ray));
     std::vector<Contestant> contest;
     for (std::size_t i = 0; i < entrants_.size(); ++i)
       contest.push_back({[this, &rays, i] { entrants_[i]->trace(rays[i]); }, {}});

@@ -16,7 +16,7 @@ struct AcrossDevice {
 };
 
 // kBaseline's builds and traces of each kind on all devices, as many rays and rounds as fit options.seconds
-// on all of them, never less than one round of kMinRays rays; rows go to each device's report, of which
+// on all of them, never less than one round of kLeastRays rays; rows go to each device's report, of which
 // after_step tells. Nothing for a single device, or where the rows are there. Rays are those of the first
 // device's hits. Throws Error as run_device does.
 void run_across(std::span<const AcrossDevice> devices, const Scene& scene, const RunOptions& options,

@@ -58,4 +58,30 @@ void run_contest(std::span<Contestant> contestants, int most, double deadline, c
   }
 }
 
+std::uint64_t fitting_rays(std::uint64_t wished, int rounds, double deadline, const Clock& now,
+                           const std::function<double(std::uint64_t)>& seconds_per_ray) {
+  constexpr double kUsed = 0.9;         // of the time, as rounds vary
+  constexpr double kTried = 0.125;      // of it, to find out
+  constexpr std::uint64_t kGrowth = 8;  // of the rays that tell
+  const std::uint64_t least = std::min(kLeastRays, wished);
+  const auto left = [&] { return std::max(0.0, deadline - now()); };
+  // Beside the rounds there is one that counts boxes and triangles.
+  const auto fit = [&](double per_ray) { return kUsed * left() / (per_ray * (rounds + 1)); };
+  static_cast<void>(seconds_per_ray(least));  // warms up
+  double per_ray = seconds_per_ray(least);
+  for (std::uint64_t tried = least; fit(per_ray) < static_cast<double>(wished);) {
+    if (per_ray * static_cast<double>(tried) > kTried * left()) break;
+    per_ray = std::min(per_ray, seconds_per_ray(tried));
+    tried *= kGrowth;
+    if (fit(per_ray) >= static_cast<double>(wished) || tried > wished ||
+        per_ray * static_cast<double>(tried) > kTried * left())
+      break;
+    per_ray = std::min(per_ray, seconds_per_ray(tried));
+  }
+  const double fits = fit(per_ray);
+  std::uint64_t count = wished;
+  while (count > least && static_cast<double>(count) > fits) count /= 2;
+  return std::max(count, least);
+}
+
 }  // namespace gnomon::compare

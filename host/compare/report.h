@@ -61,7 +61,8 @@ struct TraceRow {
   bool any_hit = false;
   std::uint64_t rays = 0;
   std::uint64_t hits = 0;
-  Rounds rounds;
+  std::uint64_t passes = 1;    // of these rays in each round
+  Rounds rounds;               // means over them
   bool counted = false;        // peers do not say
   double boxes_per_ray = 0.0;  // each ray by itself
   double triangles_per_ray = 0.0;

@@ -83,6 +83,7 @@ class Rows {
     row["query"] = r.any_hit ? "any" : "closest";
     row["ray_count"] = r.rays;
     row["hits"] = r.hits;
+    row["passes"] = r.passes;
     put_rounds(row, r.rounds, static_cast<double>(r.rays));
     row["ratio"] = spread_json(trace_gain(device_, kBaseline, r.method, r.kind, report_.clock));
     row["boxes_per_ray"] = r.counted ? Json(r.boxes_per_ray) : Json(nullptr);
@@ -198,7 +199,7 @@ void read_row(const Json& row, DeviceReport& device) {
   } else if (task == "trace") {
     const bool counted = !row.at("boxes_per_ray").is_null();
     device.traces.push_back({method, row.at("rays"), row.at("query") == "any", row.at("ray_count"),
-                             row.at("hits"), get_rounds(row), counted,
+                             row.at("hits"), row.value("passes", std::uint64_t{1}), get_rounds(row), counted,
                              counted ? row.at("boxes_per_ray").get<double>() : 0.0,
                              counted ? row.at("triangles_per_ray").get<double>() : 0.0});
   } else if (task == "accuracy") {

@@ -24,18 +24,41 @@ class Run {
     enter_methods(run_, methods);
     time_builds(run_);
     for (const std::string& kind : run_.options.kinds) {
-      time_traces(run_, kind);
-      judge(kind);
+      const double weights = run_.weights_from(run_.place_of(kind));
+      time_traces(run_, kind, run_.deadline(kTraceWeight, weights));
+      judge(kind, run_.deadline(kJudgeWeight, weights - kTraceWeight));
     }
     time_sizes(run_);
     count_areas(run_);
     pictures();
+    use_what_is_left();
     run_.report.complete = true;
     run_.keep();
   }
 
  private:
-  void judge(const std::string& kind) {
+  // Shares of the time are set before anybody knows what the steps to come will take of theirs.
+  void use_what_is_left() {
+    const std::vector<std::string> cut = std::move(run_.cut_kinds);
+    const double each = kTraceWeight + kJudgeWeight;
+    const auto of_kinds = static_cast<double>(cut.size()) * each;
+    add_rounds_of_builds(run_, run_.deadline(kBuildWeight, kBuildWeight + of_kinds));
+    for (std::size_t i = 0; i < cut.size(); ++i) {
+      const double weights = static_cast<double>(cut.size() - i) * each;
+      const double until = run_.deadline(kTraceWeight, weights);
+      if (!has_time_for_more(run_, cut[i], until)) continue;
+      run_.forget(cut[i]);
+      time_traces(run_, cut[i], until);
+      judge(cut[i], run_.deadline(kJudgeWeight, weights - kTraceWeight));
+    }
+    const auto in_order = [&](const auto& a, const auto& b) {
+      return run_.place_of(a.kind) < run_.place_of(b.kind);
+    };
+    std::stable_sort(run_.report.traces.begin(), run_.report.traces.end(), in_order);
+    std::stable_sort(run_.report.accuracies.begin(), run_.report.accuracies.end(), in_order);
+  }
+
+  void judge(const std::string& kind, double until) {
     const std::string step = "judge " + kind;
     if (run_.is_done(step)) return;
     const auto traced = std::find_if(run_.report.traces.begin(), run_.report.traces.end(),
@@ -45,7 +68,6 @@ class Run {
       return;
     }
     run_.tell(step, 0.0);
-    const double until = run_.deadline(kJudgeWeight, run_.weights_from(run_.place_of(kind)) - kTraceWeight);
     if (!judge_) judge_ = std::make_unique<Judge>(run_.scene, !run_.context.device().fp64);
     const Batch batch = run_.make_batch_of(kind, traced->rays);
     std::vector<AccuracyRow> rows;

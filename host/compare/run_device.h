@@ -35,14 +35,12 @@ struct RunOptions {
 // Fills `report`, whose finished steps it passes over. The budget: first builds may begin in its first six
 // tenths, and one that would end later, by the mean of those before it, is left out; then builds, kinds of
 // rays, judging, sizes, areas and pictures share what is left, with fewer rays and rounds where it is short,
-// but never less than one round of kMinRays rays. What was left out is in the report. after_step: called
-// whenever a step is finished and the report is worth keeping. A method whose first build fails is left out
-// with its error; kBaseline's error, and any later one, is thrown. Throws Error{kCancelled} as `progress`
-// asks.
+// but never less than one round of kLeastRays rays; what is left after all of them goes to further rounds and
+// more rays where these were cut short. What was left out is in the report. after_step: called whenever a
+// step is finished and the report is worth keeping. A method whose first build fails is left out with its
+// error; kBaseline's error, and any later one, is thrown. Throws Error{kCancelled} as `progress` asks.
 void run_device(const cl::Context& context, const Scene& scene, const std::vector<Method>& methods,
                 const RunOptions& options, DeviceReport& report, const std::function<void()>& after_step,
                 const Progress& progress);
-
-inline constexpr std::uint64_t kMinRays = 1024;
 
 }  // namespace gnomon::compare

@@ -24,6 +24,15 @@ void RunState::finish(const std::string& step) {
   keep();
 }
 
+void RunState::forget(const std::string& kind) {
+  std::erase_if(report.traces, [&](const TraceRow& row) { return row.kind == kind; });
+  std::erase_if(report.accuracies, [&](const AccuracyRow& row) { return row.kind == kind; });
+  for (const std::string& step : {"trace " + kind, "judge " + kind}) {
+    std::erase(report.done, step);
+    std::erase_if(report.left_out, [&](const LeftOut& left) { return left.what == step; });
+  }
+}
+
 void RunState::leave_out(const std::string& method, const std::string& what, const std::string& reason) {
   report.left_out.push_back({method, what, reason});
 }

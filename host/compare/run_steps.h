@@ -36,9 +36,12 @@ class RunState {
   DeviceReport& report;
   std::vector<Entered> entered;
   Entrant* baseline = nullptr;
+  std::vector<std::string> cut_kinds;  // of rays: fewer of them, or of rounds, than wished, for want of time
 
   [[nodiscard]] bool is_done(const std::string& step) const;
   void finish(const std::string& step);
+  // As if these rays had not been traced and judged yet.
+  void forget(const std::string& kind);
   void keep() { after_step_(); }
   void leave_out(const std::string& method, const std::string& what, const std::string& reason);
   void say_rounds(const std::string& step, std::size_t rounds);
@@ -69,7 +72,12 @@ Row& row_of(std::vector<Row>& rows, const std::string& method) {
 // heuristic's prediction against rays. Fills `entered`.
 void enter_methods(RunState& run, const std::vector<Method>& methods);
 void time_builds(RunState& run);
-void time_traces(RunState& run, const std::string& kind);
+void time_traces(RunState& run, const std::string& kind, double until);
+// The contests again, where time was short for them and the rest of a run left some. Further rounds of builds
+// are added to those before.
+void add_rounds_of_builds(RunState& run, double until);
+// Whether there is time by `until` for twice the rays of this kind, or for the rounds that it lacks.
+[[nodiscard]] bool has_time_for_more(const RunState& run, const std::string& kind, double until);
 void time_sizes(RunState& run);
 void count_areas(RunState& run);
 

@@ -101,8 +101,9 @@ class Chooser {
       if (hope > 2.0 * price && consider(name)) return;
     }
     if (!decision_.trials.empty()) return;
-    decision_.reason = number(rays_.expected, 0) + " rays cannot repay another tree: the cheapest costs " +
-                       number(cheapest, 0) + " units, all they do on the baseline about " +
+    decision_.reason = number(rays_.expected, 0) +
+                       " rays cannot repay another tree: the cheapest costs as much as " +
+                       number(cheapest, 0) + " box tests, all that they do on the baseline about " +
                        number(hope / (kMostSaved * options_.prices.saved), 0);
   }
 
@@ -174,8 +175,8 @@ class Chooser {
       decision_.kept = trial.name;
       decision_.cost = trial.standing.cost;
       decision_.reason = percent(1.0 - trial.standing.cost / trial.standing.baseline) +
-                         " cheaper on probe rays; saves " + number(trial.saving, 0) +
-                         " units for a price of " + number(trial.price, 0);
+                         " cheaper on probe rays; saves the work of " + number(trial.saving, 0) +
+                         " box tests for a price of " + number(trial.price, 0);
     } else if (better) {
       decision_.reason = trial.name + " is cheaper to trace but does not repay its price over " +
                          number(rays_.expected, 0) + " rays";

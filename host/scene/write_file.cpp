@@ -36,11 +36,9 @@ class Temporary {
   std::filesystem::path path_;
 };
 
-}  // namespace
-
-void write_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
-  Temporary temporary(file);
-  std::FILE* const stream = std::fopen(temporary.path().c_str(), "wb");
+void write_into(const std::filesystem::path& path, const char* mode, const std::filesystem::path& file,
+                std::span<const std::byte> bytes) {
+  std::FILE* const stream = std::fopen(path.c_str(), mode);
   if (stream == nullptr) fail(file, errno);
   // fwrite may not be handed the null pointer that an empty span has.
   const bool taken = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
@@ -48,10 +46,35 @@ void write_file(const std::filesystem::path& file, std::span<const std::byte> by
   const int reason = written ? 0 : errno;
   const bool closed = std::fclose(stream) == 0;
   if (!written || !closed) fail(file, written ? errno : reason);
+}
+
+// The file that a link leads to, there or not yet.
+std::filesystem::path behind_links(std::filesystem::path file) {
+  constexpr int kMostLinks = 40;  // as the system follows
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(file); ++i)
+    file = file.parent_path() / std::filesystem::read_symlink(file);
+  return file;
+}
+
+}  // namespace
+
+void write_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
   std::error_code error;
-  std::filesystem::rename(temporary.path(), file, error);
+  const auto status = std::filesystem::status(file, error);
+  // A device or a pipe must stay what it is: a file with its name would take its place.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+      !std::filesystem::is_directory(status))
+    return write_into(file, "wb", file, bytes);
+  const std::filesystem::path target = behind_links(file);
+  Temporary temporary(target);
+  write_into(temporary.path(), "wb", file, bytes);
+  std::filesystem::rename(temporary.path(), target, error);
   if (error) fail(file, error.value());
   temporary.keep();
+}
+
+void append_to_file(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+  write_into(file, "ab", file, bytes);
 }
 
 }  // namespace gnomon

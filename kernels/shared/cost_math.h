@@ -122,6 +122,9 @@ GN_INLINE GnSplit gn_sweep_axis(const GnMeasure* measure, int how, GN_BINS_SPACE
   if (how == GN_SEEN_WHOLE) {
     return gn_sweep_boxes(measure, GN_SEEN_WHOLE, w, bins, counts, plane_count, bin_count, axis, count);
   }
+  if (gn_kind_of(measure) == GN_MEASURE_WINDOW && how == GN_SEEN_CUT) {
+    return gn_sweep_boxes(measure, GN_SEEN_CUT, w, bins, counts, plane_count, bin_count, axis, count);
+  }
   return gn_sweep_boxes(measure, GN_SEEN_PRECISE, w, bins, counts, plane_count, bin_count, axis, count);
 }
 

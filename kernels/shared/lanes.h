@@ -24,6 +24,9 @@ typedef int4 gn_lane_mask;
 GN_INLINE gn_lane_bits gn_bits_of_lanes(gn_lanes x) { return as_uint4(x); }
 GN_INLINE gn_lanes gn_lanes_of_bits(gn_lane_bits x) { return as_float4(x); }
 GN_INLINE gn_f32 gn_first_lane(gn_lanes x) { return x.x; }
+GN_INLINE int gn_any_lane(gn_lane_mask mask) {
+  return any(mask);
+}
 #else
 #define GN_HAS_LANES 0
 #define GN_LANES_INLINE GN_INLINE
@@ -35,6 +38,9 @@ typedef int gn_lane_mask;
 GN_INLINE gn_lane_bits gn_bits_of_lanes(gn_lanes x) { return gn_bits_of(x); }
 GN_INLINE gn_lanes gn_lanes_of_bits(gn_lane_bits x) { return gn_float_of(x); }
 GN_INLINE gn_f32 gn_first_lane(gn_lanes x) { return x; }
+GN_INLINE int gn_any_lane(gn_lane_mask mask) {
+  return mask;
+}
 #endif
 
 // gn_min, gn_max and gn_abs of each lane.

@@ -6,10 +6,12 @@
 #ifndef GNOMON_SHARED_SEEN_MEASURE_H
 #define GNOMON_SHARED_SEEN_MEASURE_H
 
+#include "frame_box.h"
 #include "outline_measure.h"
 #include "polygon_math.h"
 #include "step_measure.h"
 #include "whole_angle.h"
+#include "window_measure.h"
 
 // A box counts as small when its diagonal is below 1/10 of its distance, as middling when it is below 1/2: measures in one
 // step and in a few are then right within 1 %.
@@ -65,47 +67,57 @@ GN_INLINE gn_f32 gn_face_measure(const GnMeasure* m, const gn_f32* corners, gn_u
   return gn_polygon_flat_area(polygon, count);
 }
 
-// Bounds of a box in the area's frame.
-typedef struct GnFrameBox {
-  gn_f32 at[3];
-  gn_f32 reach[3];
-} GnFrameBox;
-
-// Whether all of the box lies above or below the cones that are a yaw and pitch window's upper and lower sides.
-GN_INLINE int gn_is_beyond_pitch(const GnMeasure* m, const GnFrameBox* box) {
-  const gn_f32 height = gn_abs(box->at[1]) - box->reach[1];
-  const gn_f32 x = gn_abs(box->at[0]) + box->reach[0], z = gn_abs(box->at[2]) + box->reach[2];
-  return height > 0.0f && height * height > m->half_height * m->half_height * (x * x + z * z);
+GN_INLINE GnFrameBox gn_bounds_of(const GnOutline* outline) {
+  GnFrameBox box = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+  gn_u32 i, k;
+  for (k = 0u; k < 3u; ++k) {
+    for (i = 0u; i < 3u; ++i) {
+      box.at[i] += 0.5f * (outline->at[2u * k][i] + outline->at[2u * k + 1u][i]);
+      box.reach[i] += 0.5f * gn_abs(outline->at[2u * k + 1u][i] - outline->at[2u * k][i]);
+    }
+  }
+  return box;
 }
 
-// Which planes cut the box, by a bit for each; GN_NONE where one of them, or a window's pitch, leaves nothing of it.
-GN_INLINE gn_u32 gn_cutting_planes(const GnMeasure* m, const GnOutline* outline, gn_f32 unit) {
-  gn_u32 cutting = 0u, i, k;
-  if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH && m->culled) {
-    GnFrameBox box = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
-    for (i = 0u; i < 3u; ++i) {
-      for (k = 0u; k < 3u; ++k) {
-        box.at[i] += 0.5f * (outline->at[2u * k][i] + outline->at[2u * k + 1u][i]);
-        box.reach[i] += 0.5f * gn_abs(outline->at[2u * k + 1u][i] - outline->at[2u * k][i]);
-      }
-    }
-    if (gn_is_beyond_pitch(m, &box)) return GN_NONE;
+// Lowest and highest place of the box beside each side of the window, planes 1 to 4: all four by one formula,
+// which compilers take at once.
+GN_INLINE void gn_beside_window(const GnMeasure* m, const GnOutline* outline, gn_f32 unit, gn_f32* lowest,
+                                gn_f32* highest) {
+  const gn_f32 aside[4] = {-1.0f, 1.0f, 0.0f, 0.0f}, above[4] = {0.0f, 0.0f, -1.0f, 1.0f};
+  const int parallel = gn_kind_of(m) == GN_MEASURE_WINDOW;
+  gn_u32 i, k;
+  for (i = 0u; i < 4u; ++i) {
+    lowest[i] = parallel ? (i < 2u ? m->half_width : m->half_height) * unit : 0.0f;
+    highest[i] = lowest[i];
   }
-  for (i = 0u; i < GN_CUT_PLANES; ++i) {
-    const GnCutPlane plane = gn_cut_plane(m, unit, i);
-    gn_f32 lowest = plane.offset, highest = plane.offset;
-    if (!gn_may_cut(m, i)) continue;
-    for (k = 0u; k < 3u; ++k) {
-      const gn_u32 across = i < 3u ? 0u : 1u;
-      const gn_f32* low = outline->at[2u * k];
-      const gn_f32* high = outline->at[2u * k + 1u];
-      const gn_f32 a = plane.normal[across] * low[across] + plane.normal[2] * low[2];
-      const gn_f32 b = plane.normal[across] * high[across] + plane.normal[2] * high[2];
-      lowest += gn_min(a, b);
-      highest += gn_max(a, b);
+  for (k = 0u; k < 3u; ++k) {
+    const gn_f32* low = outline->at[2u * k];
+    const gn_f32* high = outline->at[2u * k + 1u];
+    for (i = 0u; i < 4u; ++i) {
+      const gn_f32 depth = parallel ? 0.0f : i < 2u ? m->half_width : m->half_height;
+      const gn_f32 a = aside[i] * low[0] + above[i] * low[1] + depth * low[2];
+      const gn_f32 b = aside[i] * high[0] + above[i] * high[1] + depth * high[2];
+      lowest[i] += gn_min(a, b);
+      highest[i] += gn_max(a, b);
     }
-    if (highest < 0.0f) return GN_NONE;
-    if (lowest < 0.0f) cutting |= 1u << i;
+  }
+}
+
+// Which planes cut the box, by a bit for each; GN_NONE where one of them leaves nothing of it.
+GN_INLINE gn_u32 gn_cutting_planes(const GnMeasure* m, const GnOutline* outline, gn_f32 unit) {
+  gn_f32 lowest[GN_CUT_PLANES], highest[GN_CUT_PLANES];
+  gn_u32 cutting = 0u, i, k;
+  lowest[0] = -m->near_distance * unit;
+  highest[0] = lowest[0];
+  for (k = 0u; k < 3u; ++k) {
+    lowest[0] += gn_min(outline->at[2u * k][2], outline->at[2u * k + 1u][2]);
+    highest[0] += gn_max(outline->at[2u * k][2], outline->at[2u * k + 1u][2]);
+  }
+  gn_beside_window(m, outline, unit, lowest + 1, highest + 1);
+  for (i = 0u; i < GN_CUT_PLANES; ++i) {
+    if (!gn_may_cut(m, i)) continue;
+    if (highest[i] < 0.0f) return GN_NONE;
+    if (lowest[i] < 0.0f) cutting |= 1u << i;
   }
   return cutting;
 }
@@ -126,10 +138,21 @@ GN_INLINE gn_f32 gn_faces_measure(const GnMeasure* m, const GnOutline* outline, 
   return sum;
 }
 
+// Whether few steps serve a box in yaw and pitch that no plane cuts: neither do the window's upper and lower
+// sides, and it is not large. As near as its outline's curves are, for a third of the work.
+GN_INLINE int gn_few_steps_serve(const GnMeasure* m, const GnFrameBox* box, const gn_f32* lo,
+                                 const gn_f32* hi, gn_f32 unit) {
+  const gn_f32 dx = (hi[0] - lo[0]) * unit, dy = (hi[1] - lo[1]) * unit, dz = (hi[2] - lo[2]) * unit;
+  const gn_f32 distance = box->at[0] * box->at[0] + box->at[2] * box->at[2];
+  if (m->culled && !gn_is_within_pitch(m, box)) return 0;
+  return dx * dx + dy * dy + dz * dz < GN_MIDDLING_SEEN * distance;
+}
+
 // The measure of a box that no plane cuts, where it takes less than others do.
 GN_INLINE gn_f32 gn_uncut_measure(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi) {
   const GnBoxes box = gn_boxes_of(lo, hi);
   if (gn_kind_of(m) == GN_MEASURE_SOLID_ANGLE) return gn_first_lane(gn_whole_solid_angles(m, &box));
+  if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH) return gn_first_lane(gn_few_step_measures(m, &box));
   {
     const gn_f32 dx = hi[0] - lo[0], dy = hi[1] - lo[1], dz = hi[2] - lo[2];
     return gn_abs(m->forward[0]) * dy * dz + dx * (gn_abs(m->forward[1]) * dz + gn_abs(m->forward[2]) * dy);
@@ -152,6 +175,11 @@ GN_INLINE gn_f32 gn_precise_measure(const GnMeasure* m, const gn_f32* lo, const 
     const GnOutline outline = gn_outline_of(m, lo, hi, unit);
     const gn_u32 cutting = gn_cutting_planes(m, &outline, unit);
     if (cutting == GN_NONE) return 0.0f;
+    if (kind == GN_MEASURE_YAW_PITCH) {
+      const GnFrameBox box = gn_bounds_of(&outline);
+      if (m->culled && gn_is_beyond_pitch(m, &box)) return 0.0f;
+      if (cutting == 0u && gn_few_steps_serve(m, &box, lo, hi, unit)) return gn_uncut_measure(m, lo, hi);
+    }
     if (cutting == 0u && (kind == GN_MEASURE_SOLID_ANGLE || kind == GN_MEASURE_WINDOW)) return gn_uncut_measure(m, lo, hi);
     if (outline.ahead != 0u && kind != GN_MEASURE_SOLID_ANGLE) return gn_outline_measure(m, &outline, unit);
     return gn_faces_measure(m, &outline, cutting, unit);
@@ -165,69 +193,12 @@ GN_INLINE gn_f32 gn_seen_distance_square(const GnMeasure* m, const gn_f32* p) {
   return gn_dot(p, p) - (gn_kind_of(m) == GN_MEASURE_YAW_PITCH ? above * above : 0.0f);
 }
 
-GN_INLINE gn_f32 gn_reach(const gn_f32* direction, const gn_f32* half_size) {
-  return gn_abs(direction[0]) * half_size[0] + gn_abs(direction[1]) * half_size[1] + gn_abs(direction[2]) * half_size[2];
-}
-
-GN_INLINE GnFrameBox gn_frame_box(const GnMeasure* m, const gn_f32* centre, const gn_f32* half_size) {
-  GnFrameBox box;
-  box.at[0] = gn_dot(centre, m->right);
-  box.at[1] = gn_dot(centre, m->up);
-  box.at[2] = gn_dot(centre, m->forward);
-  box.reach[0] = gn_reach(m->right, half_size);
-  box.reach[1] = gn_reach(m->up, half_size);
-  box.reach[2] = gn_reach(m->forward, half_size);
-  return box;
-}
-
-GN_INLINE int gn_is_within_pitch(const GnMeasure* m, const GnFrameBox* box) {
-  const gn_f32 height = gn_abs(box->at[1]) + box->reach[1];
-  const gn_f32 x = gn_max(gn_abs(box->at[0]) - box->reach[0], 0.0f), z = gn_max(box->at[2] - box->reach[2], 0.0f);
-  return height * height <= m->half_height * m->half_height * (x * x + z * z);
-}
-
-// Whether no ray can meet the box: all of it lies beyond one side of the window, or behind where rays begin. centre is
-// seen from the origin; box: the same box's bounds in the frame.
-GN_INLINE int gn_is_out_of_sight(const GnMeasure* m, const gn_f32* centre, const gn_f32* half_size,
-                                 const GnFrameBox* box) {
-  const int parallel = gn_kind_of(m) == GN_MEASURE_WINDOW;
-  gn_u32 side, k;
-  if (!m->culled) return 0;
-  if (box->at[2] + box->reach[2] < m->near_distance) return 1;
-  if (parallel) {
-    return gn_abs(box->at[0]) - box->reach[0] > m->half_width || gn_abs(box->at[1]) - box->reach[1] > m->half_height;
-  }
-  if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH && gn_is_beyond_pitch(m, box)) return 1;
-  for (side = 0u; side < (gn_kind_of(m) == GN_MEASURE_YAW_PITCH ? 2u : 4u); ++side) {
-    const gn_f32 sign = side % 2u == 0u ? 1.0f : -1.0f;
-    const gn_f32 window = side < 2u ? m->half_width : m->half_height;
-    gn_f32 distance = 0.0f, reach = 0.0f;
-    for (k = 0u; k < 3u; ++k) {
-      const gn_f32 outwards = sign * (side < 2u ? m->right[k] : m->up[k]) - window * m->forward[k];
-      distance += outwards * centre[k];
-      reach += gn_abs(outwards) * half_size[k];
-    }
-    if (distance > reach) return 1;
-  }
-  return 0;
-}
-
 #define GN_SEEN_ONE_STEP 0
 #define GN_SEEN_PRECISE 1
 #define GN_SEEN_NOTHING 2
 #define GN_SEEN_FEW_STEPS 3
 #define GN_SEEN_WHOLE 4
-
-// Whether the window holds all of the box, and rays begin before it.
-GN_INLINE int gn_is_seen_whole(const GnMeasure* m, const GnFrameBox* box) {
-  const gn_f32 nearest = box->at[2] - box->reach[2];
-  const gn_f32 depth = gn_kind_of(m) == GN_MEASURE_WINDOW ? 1.0f : nearest;
-  if (!(nearest >= m->near_distance)) return 0;
-  if (!m->culled) return 1;
-  if (!(gn_abs(box->at[0]) + box->reach[0] <= m->half_width * depth)) return 0;
-  if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH) return gn_is_within_pitch(m, box);
-  return gn_abs(box->at[1]) + box->reach[1] <= m->half_height * depth;
-}
+#define GN_SEEN_CUT 5  // by the sides of a window of parallel rays, but all of it ahead of where they begin
 
 // How the boxes of a node must be measured: precisely where it is large as seen from the eye, or not all of it is inside
 // the window and ahead of where rays begin.
@@ -249,12 +220,15 @@ GN_INLINE int gn_seen_how(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi
   if (gn_kind_of(m) == GN_MEASURE_SOLID_ANGLE && !m->culled) return steps;
   box = gn_frame_box(m, centre, half_size);
   if (gn_is_out_of_sight(m, centre, half_size, &box)) return GN_SEEN_NOTHING;
-  return gn_is_seen_whole(m, &box) ? steps : GN_SEEN_PRECISE;
+  if (gn_is_seen_whole(m, &box)) return steps;
+  return gn_kind_of(m) == GN_MEASURE_WINDOW && box.at[2] - box.reach[2] >= m->near_distance ? GN_SEEN_CUT
+                                                                                            : GN_SEEN_PRECISE;
 }
 
-// Of a box in each lane. how: GN_SEEN_ONE_STEP, GN_SEEN_FEW_STEPS or GN_SEEN_WHOLE.
+// Of a box in each lane. how: GN_SEEN_ONE_STEP, GN_SEEN_FEW_STEPS, GN_SEEN_WHOLE or GN_SEEN_CUT.
 GN_LANES_INLINE gn_lanes gn_lane_measures(const GnMeasure* m, const int how, const GnBoxes* box) {
   if (how == GN_SEEN_WHOLE) return gn_whole_solid_angles(m, box);
+  if (how == GN_SEEN_CUT) return gn_window_measures(m, box);
   return how == GN_SEEN_ONE_STEP ? gn_one_step_measures(m, box) : gn_few_step_measures(m, box);
 }
 

@@ -1,5 +1,6 @@
 // gnomon compare from end to end on tiny scenes: rows, page, time, Ctrl-C and going on.
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -49,8 +50,10 @@ json read_report(const Folder& folder) {
 
 TEST_CASE("compare measures every method on the same rays and writes page, rows and charts") {
   const Folder folder;
+  const auto begun = std::chrono::steady_clock::now();
   const auto outcome =
       run(command(folder.file("r.html"), {"--json", "--quiet", "--rows", folder.file("r.jsonl")}));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   CAPTURE(outcome.out, outcome.err);
   REQUIRE(outcome.status == 0);
   const json document = json::parse(outcome.out);
@@ -77,14 +80,18 @@ TEST_CASE("compare measures every method on the same rays and writes page, rows 
 
   const auto traces = rows_of(report, "trace");
   REQUIRE(traces.size() == methods.size() * 3);
+  double in_rounds = 0.0;
   for (const json& row : traces) {
     CAPTURE(row.dump());
+    REQUIRE(row.at("passes") > 1);  // so few rays
+    for (const double seconds : row.at("wall_s")) in_rounds += seconds * row.at("passes").get<double>();
     REQUIRE(row.at("wall_s").size() == 3);
     REQUIRE(row.at("ray_count").get<int>() > 200);
     if (row.at("method").get<std::string>().starts_with("embree")) continue;
     REQUIRE(row.at("boxes_per_ray") > 1.0);
     REQUIRE(row.at("triangles_per_ray") > 0.0);
   }
+  REQUIRE(in_rounds < took.count());
   // Trees differ, answers do not.
   for (const json& row : rows_of(report, "accuracy")) {
     CAPTURE(row.dump());
@@ -221,6 +228,42 @@ TEST_CASE("where time is short less is measured, and the page says what was left
   REQUIRE_THAT(outcome.err, Contains("left out: "));
 }
 
+TEST_CASE("what a budget leaves goes to what it cut short, and rows stay one of each, in order") {
+  const Folder folder;
+  // More rays than any time here is enough for.
+  const auto begun = std::chrono::steady_clock::now();
+  const auto outcome = run(command(folder.file("r.html"), {"--time", "6s"}, "3", "30M"));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.status == 0);
+  CHECK(took.count() < 12.0);  // the kernels may have to be compiled
+  const json report = read_report(folder);
+  std::vector<std::string> order;
+  std::map<std::string, std::uint64_t> counts;
+  for (const std::string task : {"trace", "accuracy"}) {
+    std::set<std::pair<std::string, std::string>> seen;
+    order.clear();
+    for (const json& row : rows_of(report, task)) {
+      const std::string kind = row.at("rays");
+      CHECK(seen.emplace(kind, row.at("method")).second);
+      if (order.empty() || order.back() != kind) order.push_back(kind);
+      if (task == "trace") counts[kind] = row.at("ray_count");
+    }
+    CHECK(order == std::vector<std::string>{"primary", "shadow", "light"});
+  }
+  std::map<std::string, int> said;
+  for (const json& row : rows_of(report, "left_out")) {
+    const std::string what = row.at("what");
+    const std::string reason = row.at("reason");
+    if (!what.starts_with("trace ") || reason.find("rays instead of 30000000") == std::string::npos) continue;
+    ++said[what.substr(6)];
+    // Of those that were drawn: shadow rays are those of points that were met.
+    CHECK(std::stoull(reason) >= counts.at(what.substr(6)));
+    CHECK(counts.at(what.substr(6)) * 2 > std::stoull(reason));
+  }
+  CHECK(said == std::map<std::string, int>{{"primary", 1}, {"shadow", 1}, {"light", 1}});
+}
+
 TEST_CASE("a scene from a file is made smaller by leaving triangles out, and the page says so") {
   const Folder folder;
   REQUIRE(run({"scene", "cottage", "--triangles", "7k", "-o", folder.file("c.glb"), "-q"}).status == 0);
@@ -298,6 +341,9 @@ TEST_CASE("what makes no sense is refused before anything is measured") {
   refused({"-o", page, "--rays", "sideways"}, 4, "anything else is a file of rays");
   refused({"-o", page, "--devices", "no such device"}, 3, "no such device");
   refused({"-o", page, "--rounds", "0"}, 2, "--rounds");
+  refused({"-o", page, "--rows", folder.file("nowhere/rows.jsonl")}, 1, "No such file");
+  std::filesystem::create_directory(folder.file("folder.html"));
+  refused({"-o", folder.file("folder.html")}, 1, "it is a folder");
   program::write_text(folder.file("r.json"), "not a report");
   refused({"-o", page}, 4, "not a report that can be gone on from");
 }

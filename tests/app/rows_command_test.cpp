@@ -2,6 +2,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
 
 #include "run_program.h"
 
@@ -111,6 +113,40 @@ TEST_CASE("a figure moved when its ranges have no value in common") {
   CHECK(slower.at("moves").at(0).at("verdict") == "worse");
 }
 
+TEST_CASE("a figure that one side lacks moved, and one of a single round has no spread to judge by") {
+  Files files;
+  const auto traced = [](const json& ratio) {
+    std::istringstream lines(program::read_text(std::string(GNOMON_RESULTS_FOLDER) + "/compare.jsonl"));
+    for (std::string line; std::getline(lines, line);) {
+      json row = json::parse(line);
+      if (row.at("task") != "trace") continue;
+      row["ratio"] = ratio;
+      return row;
+    }
+    throw std::runtime_error("no such row is stored");
+  };
+  const json many = traced(spread(2, 1.9, 2.1));
+  const json none = traced(nullptr);
+  json once = traced(spread(9, 9, 9));
+  once["ratio"]["n"] = 1;
+  const json same = files.diff({many}, {many});
+  CHECK(same.at("same") == true);
+  for (const auto& [before, after] : {std::pair{many, none}, std::pair{none, many}}) {
+    const json moved = files.diff({before}, {after});
+    REQUIRE(moved.at("moves").size() == 1);
+    CHECK(moved.at("moves")[0].at("figure") == "ratio");
+    CHECK(moved.at("moves")[0].at("ratio").is_null());
+    CHECK(run({"rows", "diff", files.put("a.jsonl", {before}), files.put("b.jsonl", {after})}).status == 7);
+  }
+  CHECK(files.diff({none}, {none}).at("same") == true);
+  for (const auto& [before, after] : {std::pair{many, once}, std::pair{once, many}}) {
+    const json unjudged = files.diff({before}, {after});
+    CHECK(unjudged.at("same") == true);
+    CHECK(unjudged.at("not_judged").get<int>() == same.at("not_judged").get<int>() + 1);
+    CHECK(unjudged.at("figures").get<int>() == same.at("figures").get<int>() - 1);
+  }
+}
+
 TEST_CASE("a mean moved when it is more than three standard errors of the difference away") {
   Files files;
   CHECK(files.diff({prediction_row(5, 0.3)}, {prediction_row(6.4, 0.4)}).at("same") == true);  // 2.8 of 0.5
@@ -171,6 +207,11 @@ TEST_CASE("the table names what tells rows apart, both figures and the ratio") {
   CHECK_THAT(outcome.out, Contains("2 measurements in both, 8 figures compared, 1 moved"));
   CHECK_THAT(outcome.out, Contains("spine, primary") && Contains("10 (9 to 11, n 7)") && Contains("2.000") &&
                               Contains("better"));
+  const auto apart =
+      run({"rows", "diff", files.put("a.jsonl", {trace_row("primary", 10), trace_row("shadow", 3)}),
+           files.put("b.jsonl", {trace_row("primary", 10), trace_row("bounce", 3)})});
+  CHECK_THAT(apart.out,
+             Contains("only before:\n  spine, shadow\n") && Contains("only after:\n  spine, bounce\n"));
 }
 
 TEST_CASE("what is no file of rows exits 4 and names file, line and fault") {

@@ -66,6 +66,8 @@ TEST_CASE("wrong usage exits 2, says what is wrong and where help is") {
     CHECK(outcome.out.empty());
     CHECK_THAT(outcome.err, Contains("gnomon: error: ") && Contains("--help"));
   }
+  CHECK_THAT(run({"biuld", "gen:random"}, kNoDevice).err,
+             Contains("no subcommand \"biuld\"") && Contains("there are devices, ") && Contains(" build, "));
 }
 
 TEST_CASE("options are checked before anything is loaded or opened") {

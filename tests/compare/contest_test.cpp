@@ -59,3 +59,45 @@ TEST_CASE(
   CHECK(rounds_of({{takes(5), {}}, {takes(5), {}}, {takes(5), {}}}, 64.0) == Counts{4, 4, 4});
   CHECK(rounds_of({{takes(10), {}}, {takes(1), {}}}, 40.0) == Counts{3, 3});
 }
+
+TEST_CASE("rays fit as many of them cost, not as the first few do") {
+  double time = 0.0;
+  std::vector<std::uint64_t> tried;
+  // A fiftieth of a second beside a second for a million, as launches take it.
+  const auto seconds_per_ray = [&](std::uint64_t count) {
+    tried.push_back(count);
+    const double seconds = 0.02 + 1e-6 * static_cast<double>(count);
+    time += seconds;
+    return seconds / static_cast<double>(count);
+  };
+  const auto fitting = [&](std::uint64_t wished, double deadline) {
+    time = 0.0;
+    tried.clear();
+    return fitting_rays(
+        wished, 7, deadline, [&] { return time; }, seconds_per_ray);
+  };
+  CHECK(fitting(1'000'000, 12.0) == 1'000'000);  // by the first 1024 alone, in 21 ms, 62500
+  CHECK(tried.back() == 65'536);
+  CHECK(time + 8.0 * 1.02 < 12.0);  // seven rounds of these, and one that counts, end in time
+  CHECK(fitting(1'000'000, 6.0) == 500'000);
+  CHECK(time + 8.0 * 0.52 < 6.0);
+  CHECK(fitting(1'000'000, 0.0) == kLeastRays);
+  CHECK(tried.size() == 2);
+  CHECK(fitting(100, 0.0) == 100);
+  CHECK(tried == std::vector<std::uint64_t>{100, 100});
+  CHECK(fitting(4096, 1e9) == 4096);
+  CHECK(tried == std::vector<std::uint64_t>{kLeastRays, kLeastRays});  // all fit: nothing more is asked
+}
+
+TEST_CASE("one measurement that the machine delayed does not take rays away") {
+  double time = 0.0;
+  int calls = 0;
+  const auto seconds_per_ray = [&](std::uint64_t count) {
+    const double seconds = 1e-6 * static_cast<double>(count) + (++calls == 2 ? 0.1 : 0.0);
+    time += seconds;
+    return seconds / static_cast<double>(count);
+  };
+  CHECK(fitting_rays(
+            65'536, 7, 3.0, [&] { return time; }, seconds_per_ray) == 65'536);
+  CHECK(time < 0.12);
+}

@@ -1,7 +1,9 @@
 // A report as files: JSON, rows and CSV, written and read again.
 #include <catch2/catch.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "gnomon/base/error.h"
 #include "gnomon/compare/base64.h"
@@ -88,6 +90,23 @@ TEST_CASE("a row's ratio is of the same round, the baseline's over its own") {
   CHECK(seen == 4);
 }
 
+TEST_CASE("a row's times are medians of a ray or triangle, of each clock by itself") {
+  auto report = sample_report();
+  for (TraceRow& trace : report.devices[0].traces) trace.rounds.cpu_s = {3.0, 9.0, 5.0};
+  bool seen = false;
+  std::istringstream lines(to_rows_text(report));
+  for (std::string line; std::getline(lines, line);) {
+    const auto row = nlohmann::json::parse(line);
+    if (row.at("task") != "trace" || row.at("method") != "sah-fast" || row.at("rays") != "bounce") continue;
+    CAPTURE(line);
+    CHECK(row.at("real_time") == 8e6);  // 8 s for 1000 rays
+    CHECK(row.at("cpu_time") == 5e6);
+    CHECK(row.at("time_unit") == "ns");
+    seen = true;
+  }
+  CHECK(seen);
+}
+
 TEST_CASE("a text that is no report is refused with its name and what to do") {
   for (const char* text :
        {"", "{", "[]", "{}", R"({"bench": "spine", "schema": 1})", R"({"bench": "compare", "schema": 2})"}) {
@@ -108,6 +127,67 @@ TEST_CASE("the CSV has a line for each method and kind, with as many cells as th
     CAPTURE(csv.substr(at, end - at));
     REQUIRE(here == commas);
     at = end + 1;
+  }
+}
+
+TEST_CASE("each cell of the CSV stands under its name") {
+  auto report = sample_report();
+  for (AccuracyRow& row : report.devices[0].accuracies) {
+    row.lost = 1;
+    row.false_hits = 2;
+    row.wrong_primitive = 3;
+    row.any_closest_disagree = 4;
+  }
+  for (TraceRow& row : report.devices[0].traces) row.boxes_per_ray = 25.0;
+  std::istringstream lines(to_csv(report));
+  std::string head;
+  std::string line;
+  std::getline(lines, head);
+  while (std::getline(lines, line) && line.find(",sah-best,bounce,") == std::string::npos) {
+  }
+  const auto cells = [](const std::string& text) {
+    std::vector<std::string> out{""};
+    bool quoted = false;
+    for (const char c : text) {
+      if (c == '"') quoted = !quoted;
+      if (c == ',' && !quoted)
+        out.emplace_back();
+      else
+        out.back() += c;
+    }
+    return out;
+  };
+  const std::vector<std::string> names = cells(head);
+  const std::vector<std::string> values = cells(line);
+  REQUIRE(values.size() == names.size());
+  std::map<std::string, std::string> of;
+  for (std::size_t i = 0; i < names.size(); ++i) of[names[i]] = values[i];
+  const std::map<std::string, std::string> expected{{"method", "sah-best"},
+                                                    {"rays", "bounce"},
+                                                    {"build_s", "4"},
+                                                    {"build_rounds", "3"},
+                                                    {"bytes", "2097152"},
+                                                    {"sah_cost", "40"},
+                                                    {"tree_hash", "0123456789abcdef"},
+                                                    {"ray_count", "1000"},
+                                                    {"trace_ns_per_ray", "2e+06"},
+                                                    {"trace_ns_min", "2e+06"},
+                                                    {"trace_ns_max", "2500000"},
+                                                    {"trace_rounds", "3"},
+                                                    {"boxes_per_ray", "25"},
+                                                    {"triangles_per_ray", "6"},
+                                                    {"judged", "100"},
+                                                    {"lost", "1"},
+                                                    {"false_hits", "2"},
+                                                    {"wrong_primitive", "3"},
+                                                    {"any_closest_disagree", "4"},
+                                                    {"max_t_error_ulp", "0.5"},
+                                                    {"predicted_cost", "30"},
+                                                    {"measured_cost", "36"},
+                                                    {"measured_standard_error", "0.5"}};
+  for (const auto& [name, value] : expected) {
+    CAPTURE(name);
+    CHECK(of[name] == value);
   }
 }
 

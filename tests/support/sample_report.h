@@ -35,6 +35,7 @@ inline void add(DeviceReport& device, const SampleMethod& m) {
     trace.kind = kind;
     trace.rays = 1000;
     trace.hits = 900;
+    trace.passes = 3;
     trace.rounds = {seconds, seconds};
     trace.counted = m.family != Family::kPeer;
     trace.boxes_per_ray = trace.counted ? 25.0 : 0.0;

@@ -1,8 +1,8 @@
 // gnomon detect: where a scene's rays run together.
 #include <cmath>
-#include <fstream>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <sstream>
 
 #include "commands.h"
@@ -11,6 +11,7 @@
 #include "gnomon/areas/detect.h"
 #include "gnomon/areas/detect_lights.h"
 #include "gnomon/device/build_device.h"
+#include "gnomon/scene/write_file.h"
 #include "interrupt.h"
 #include "numbers.h"
 #include "ray_batch.h"
@@ -162,20 +163,18 @@ Json listed(const std::vector<Row>& rows) {
   return out;
 }
 
-// The list of areas that other tools read: the fields of reproduce's set-ups.
+// The list of areas for other programs: each by the fields that an area of reproduce's set-ups has.
 void write_areas(const Options& options, const std::vector<Row>& rows) {
   Json configs = Json::array();
   for (const Row& row : rows) {
     Json one{{"scene", options.scene.source},
              {"area", row.area.kind() == AreaKind::kPlane ? "plane" : "point"},
-             {"orientation", row.what + ", " + row.kind},
-             {"used_by_variants", Json::array()}};
+             {"orientation", row.what + ", " + row.kind}};
     one.update(area_json(row.area));
     configs.push_back(std::move(one));
   }
-  std::ofstream file(options.out);
-  file << Json{{"configs", configs}}.dump(1) << "\n";
-  if (!file.flush()) throw Error(ErrorCode::kIo, "cannot write " + options.out + "; is its folder there?");
+  const std::string text = Json{{"configs", configs}}.dump(1) + "\n";
+  write_file(options.out, std::as_bytes(std::span(text)));
 }
 
 int run(const Options& options, Console& console) {
@@ -264,8 +263,9 @@ void add_detect_command(CLI::App& program, OutputOptions& output, Action& action
       ->capture_default_str();
   add_count(*command, "--seed", options->seed, "for the rays that are drawn at random");
   command
-      ->add_option("-o,--output", options->out,
-                   "write the areas to this file, in the form of reproduce's set-ups (JSON)")
+      ->add_option(
+          "-o,--output", options->out,
+          "write the areas to this file (JSON), by the fields that areas have in reproduce's set-ups")
       ->type_name("FILE");
   add_device_options(*command, options->device);
   add_output_options(*command, output);

@@ -14,6 +14,7 @@ namespace {
 
 using Kind = LineModel::Kind;
 
+constexpr double kAsSure = 0.98;  // of the surest, by logarithms
 constexpr std::size_t kFewest = 16;
 constexpr double kLeastContrast = 5.0;
 constexpr double kLog10Chance = -6.0;
@@ -146,9 +147,8 @@ class Search {
       if (!moved) break;
       const Concentration now = concentration_of(*moved, rest_, shares);
       if (!(now.nats > best.concentration.nats)) {
-        // As sure, but in the middle of the same rays.
-        if (now.count == best.concentration.count && now.share == best.concentration.share)
-          best.model = *moved;
+        // As sure, or all but so, and in the middle of its rays.
+        if (now.nats > kAsSure * best.concentration.nats) best = {*moved, now};
         break;
       }
       best = {*moved, now};

@@ -40,10 +40,12 @@ struct RayGroup {
   Vec3d apex;             // pencils
   std::size_t count = 0;  // of the rays looked at
   double coverage = 0.0;  // the same as a share
-  double inside = 0.0;    // share of the group's rays that are in the area whole, from begin to end
-  double spread = 0.0;    // radians, root mean square: about the direction, or from the line to the apex
-  double miss = 0.0;      // pencils: root mean square distance from the apex to the rays' lines
-  double contrast = 0.0;  // how many times as dense as in the ring around it, or as isotropic rays are
+  // Share of the group's rays that are in the area whole, from begin to end. Low for pencils whose lines miss
+  // the apex: next to it the frustum is narrower than that.
+  double inside = 0.0;
+  double spread = 0.0;        // radians, root mean square: about the direction, or from the line to the apex
+  double miss = 0.0;          // pencils: root mean square distance from the apex to the rays' lines
+  double contrast = 0.0;      // how many times as dense as in the ring around it, or as isotropic rays are
   double log10_chance = 0.0;  // that rays without direction had shown such a group anywhere: at most 10^this
 };
 

@@ -74,7 +74,7 @@ void check_name(const std::string& file) {
 void write(const Options& options, const Scene& scene, const TimedBuild& build) {
   if (options.file.empty()) return;
   if (options.file.ends_with(kPlainTree)) return export_bvh2(options.file, build.host, scene.triangles);
-  save_tree(options.file, build.host, build.options, scene.triangles);
+  save_tree(options.file, build.host, build.options, scene.triangles, build.fitted);
 }
 
 // Rays of a file, or those of the scene's camera and lights.

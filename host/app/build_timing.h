@@ -20,6 +20,7 @@ struct BuildRuns {
 
 struct TimedBuild {
   BuildOptions options;  // that decided the tree
+  bool fitted = false;   // to rays, by a plan, from where the options led
   std::string file;      // it came from; empty: it was built here, in the time below
   DeviceBvh tree;
   BuildRuns runs;

@@ -121,6 +121,7 @@ Json to_json(const KeptTree& kept) {
           {"hash", kept.hash},
           {"builder", to_string(options.builder)},
           {"heuristic", heuristic_name(options)},
+          {"fitted_to_rays", kept.tree.fitted},
           {"bins", options.bins},
           {"max_leaf", options.max_leaf_size},
           {"cost_traversal", options.cost_traversal},
@@ -135,8 +136,10 @@ Json to_json(const KeptTree& kept) {
 
 std::string describe(const KeptTree& kept) {
   return kept.file + ": hash " + kept.hash + ", builder " + to_string(kept.tree.options.builder) +
-         ", heuristic " + heuristic_name(kept.tree.options) + ", SAH cost " + fixed(kept.stats.sah_cost, 2) +
-         ", " + std::to_string(kept.stats.nodes) + " nodes, depth " + std::to_string(kept.stats.max_depth);
+         ", heuristic " + heuristic_name(kept.tree.options) +
+         (kept.tree.fitted ? ", fitted to rays by a plan" : "") + ", SAH cost " +
+         fixed(kept.stats.sah_cost, 2) + ", " + std::to_string(kept.stats.nodes) + " nodes, depth " +
+         std::to_string(kept.stats.max_depth);
 }
 
 std::string facts_of(const Options& options, const Scene& scene) {

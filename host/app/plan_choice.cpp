@@ -107,6 +107,7 @@ bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour) {
 }
 
 void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree) {
+  build.fitted = true;
   build.host = tree.tree.bvh;
   build.tree = upload_bvh(task.context, build.host, task.scene.triangles);
   build.hash = tree_hash(build.host);

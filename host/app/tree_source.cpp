@@ -12,6 +12,7 @@ TimedBuild from_file(const cl::Context& context, const Scene& scene, const std::
   TimedBuild result;
   result.file = file;
   result.options = stored.options;
+  result.fitted = stored.fitted;
   result.host = std::move(stored.bvh);
   result.tree = upload_bvh(context, result.host, scene.triangles);
   result.hash = tree_hash(result.host);

@@ -58,7 +58,8 @@ struct Header {
   float max_probability;
   float max_area;
   GnMeasure measure;
-  std::array<std::uint32_t, 8> reserved;
+  std::uint32_t fitted;
+  std::array<std::uint32_t, 7> reserved;
 };
 static_assert(sizeof(Header) == 256 && std::is_trivially_copyable_v<Header>);
 static_assert(offsetof(Header, scene_hash) == kUnhashed && offsetof(Header, measure) == 128);
@@ -149,7 +150,7 @@ Header checked_header(std::span<const std::byte> bytes) {
            ", its parts need " + std::to_string(size_of(h.nodes, h.order)) + "; was it copied whole?");
   }
   if (h.checksum != checksum_of(bytes)) refuse("its checksum is wrong: it was damaged after it was written");
-  for (const std::uint32_t flag : {h.rays_from_point, h.repaired, h.published_leaves})
+  for (const std::uint32_t flag : {h.rays_from_point, h.repaired, h.published_leaves, h.fitted})
     if (flag > 1) refuse("a flag of its options is neither 0 nor 1");
   for (const std::uint32_t word : h.reserved)
     if (word != 0) refuse("bytes that are to be 0 are not");
@@ -164,11 +165,12 @@ Header checked_header(std::span<const std::byte> bytes) {
 }  // namespace
 
 std::vector<std::byte> tree_to_bytes(const Bvh& bvh, const BuildOptions& options,
-                                     std::span<const GnTriangle> triangles) {
+                                     std::span<const GnTriangle> triangles, bool fitted) {
   options.check();
   if (const auto fault = check_bvh(bvh, triangles, options))
     throw Error(ErrorCode::kInvalidArgument, "no file is made of a broken tree: " + fault->what);
-  const Header header = header_of(bvh, options, triangles);
+  Header header = header_of(bvh, options, triangles);
+  header.fitted = fitted ? 1 : 0;
   std::vector<std::byte> bytes =
       joined_bytes({std::as_bytes(std::span(&header, 1)), std::as_bytes(std::span(bvh.nodes)),
                     std::as_bytes(std::span(bvh.primitives))});
@@ -188,6 +190,7 @@ StoredTree tree_from_bytes(std::span<const std::byte> bytes, std::span<const GnT
   }
   StoredTree tree;
   tree.options = options_of(header);
+  tree.fitted = header.fitted == 1;
   tree.bvh.nodes.resize(header.nodes);
   tree.bvh.primitives.resize(header.order);
   const std::byte* const nodes = bytes.data() + sizeof(Header);
@@ -200,8 +203,8 @@ StoredTree tree_from_bytes(std::span<const std::byte> bytes, std::span<const GnT
 }
 
 void save_tree(const std::filesystem::path& file, const Bvh& bvh, const BuildOptions& options,
-               std::span<const GnTriangle> triangles) {
-  write_file(file, tree_to_bytes(bvh, options, triangles));
+               std::span<const GnTriangle> triangles, bool fitted) {
+  write_file(file, tree_to_bytes(bvh, options, triangles, fitted));
 }
 
 StoredTree load_tree(const std::filesystem::path& file, std::span<const GnTriangle> triangles) {

@@ -107,6 +107,13 @@ TEST_CASE("build keeps one tree for all rays to come, where it is told of them")
   REQUIRE(planned["plan"]["chosen"][0]["rays"] == "all");
   REQUIRE(planned["plan"]["chosen"][0]["measured_saving"] > 0.0);
   REQUIRE(planned["tree"]["hash"] != untold["tree"]["hash"]);
+  // No builder makes the same tree, and none is asked to.
+  const json checked = document_of({"validate", "gen:cottage:8k", "--tree", folder.file("planned.gnb"),
+                                    "--json", "--count", "500", "--max-rays", "100"});
+  REQUIRE(checked["ok"] == true);
+  REQUIRE(checked["reference_hash"] == nullptr);
+  const json info = document_of({"info", "gen:cottage:8k", "--tree", folder.file("planned.gnb"), "--json"});
+  REQUIRE(info["tree"]["fitted_to_rays"] == true);
   const json traced = document_of({"trace", "gen:cottage:8k", "--tree", folder.file("planned.gnb"), "--count",
                                    "2k", "--repeat", "1", "--json"});
   REQUIRE(traced["tree"]["hash"] == planned["tree"]["hash"]);

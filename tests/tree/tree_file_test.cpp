@@ -160,6 +160,15 @@ TEST_CASE("a tree of another scene is refused with both hashes") {
   CHECK_THAT(refusal_of(bytes, fewer), Contains("over 90 triangles") && Contains("these are 89"));
 }
 
+TEST_CASE("a file says whether a plan fitted its tree") {
+  const KeptShape shape = soup_shape();
+  const Bvh bvh = build_reference(shape.triangles, shape.options);
+  for (const bool fitted : {false, true}) {
+    const FileBytes bytes = tree_to_bytes(bvh, shape.options, shape.triangles, fitted);
+    CHECK(tree_from_bytes(bytes, shape.triangles).fitted == fitted);
+  }
+}
+
 TEST_CASE("wrong options, flags, reserved bytes and broken trees are refused though the checksum fits") {
   const FileBytes whole = file_of(soup_shape());
   const auto with = [&](std::size_t at, std::uint32_t value) {
@@ -176,6 +185,8 @@ TEST_CASE("wrong options, flags, reserved bytes and broken trees are refused tho
   CHECK_THAT(with(92, 2), Contains("flag"));
   CHECK_THAT(with(96, 2), Contains("flag"));
   CHECK_THAT(with(104, 2), Contains("flag"));
+  CHECK_THAT(with(224, 2), Contains("flag"));
+  CHECK_THAT(with(228, 1), Contains("are to be 0"));
   CHECK_THAT(with(252, 1), Contains("are to be 0"));
   CHECK_THAT(with(kHeaderBytes + 12, 0xffffffffU), Contains("links"));
   CHECK_THAT(with(kHeaderBytes + 12, 0), Contains("links"));

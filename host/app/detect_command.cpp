@@ -249,13 +249,7 @@ void add_detect_command(CLI::App& program, OutputOptions& output, Action& action
   CLI::App* const command =
       program.add_subcommand("detect", "Find where rays run together: the areas that local trees are for.");
   add_scene_options(*command, options->scene);
-  CLI::Option* const kinds =
-      command->add_option("--rays", options->kinds, "which kinds of rays to draw, with commas between")
-          ->delimiter(',')
-          ->check(CLI::IsMember(ray_kind_names()))
-          ->type_name("KINDS")
-          ->capture_default_str();
-  add_ray_file_options(*command, options->rays_in)->excludes(kinds);
+  add_ray_kind_options(*command, options->kinds, options->rays_in);
   command
       ->add_option("--least", options->least, "the share of its kind's rays that a group must have, 0 to 1")
       ->check(CLI::Range(0.0, 1.0))

@@ -74,13 +74,7 @@ void add_plan_command(CLI::App& program, OutputOptions& output, Action& action) 
   const auto options = std::make_shared<Options>();
   CLI::App* const command = program.add_subcommand("plan", "Say which trees a scene's rays need, and why.");
   add_scene_options(*command, options->scene);
-  CLI::Option* const kinds =
-      command->add_option("--rays", options->kinds, "which kinds of rays, with commas between")
-          ->delimiter(',')
-          ->check(CLI::IsMember(ray_kind_names()))
-          ->type_name("KINDS")
-          ->capture_default_str();
-  add_ray_file_options(*command, options->rays_in)->excludes(kinds);
+  add_ray_kind_options(*command, options->kinds, options->rays_in);
   command
       ->add_option("--query", options->query,
                    "what is asked of the file's rays: closest or any; of a record's shadow rays always any")

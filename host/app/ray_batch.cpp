@@ -48,6 +48,15 @@ CLI::Option* add_ray_file_options(CLI::App& command, RayFileOptions& options) {
   return file;
 }
 
+void add_ray_kind_options(CLI::App& command, std::vector<std::string>& kinds, RayFileOptions& file) {
+  CLI::Option* const drawn = command.add_option("--rays", kinds, "which kinds of rays, with commas between")
+                                 ->delimiter(',')
+                                 ->check(CLI::IsMember(ray_kind_names()))
+                                 ->type_name("KINDS")
+                                 ->capture_default_str();
+  add_ray_file_options(command, file)->excludes(drawn);
+}
+
 std::vector<NamedRays> read_ray_file(const RayFileOptions& options) {
   try {
     if (is_ray_record(options.file)) return read_record(options);

@@ -26,6 +26,8 @@ struct RayFileOptions {
   std::vector<std::string> kinds;  // of a record's rays; empty: all
 };
 CLI::Option* add_ray_file_options(CLI::App& command, RayFileOptions& options);
+// --rays KINDS, and the file's options instead.
+void add_ray_kind_options(CLI::App& command, std::vector<std::string>& kinds, RayFileOptions& file);
 
 struct NamedRays {
   std::string kind;  // "file" for raw ones

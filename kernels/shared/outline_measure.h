@@ -1,6 +1,7 @@
 // The precise measure of a box that lies wholly ahead of where rays begin: its area inside the window as seen from the eye,
 // from its outline alone. An edge is on the outline where rays leave by one of its two faces; there are four or six of
-// them. No polygon is cut. Not for solid angles, nor for boxes around or beside the eye (seen_measure.h).
+// them. No polygon is cut. Not for solid angles or parallel rays (whole_angle.h, window_measure.h), nor for boxes around or
+// beside the eye (seen_measure.h).
 // Feeds seen_measure.h.
 #ifndef GNOMON_SHARED_OUTLINE_MEASURE_H
 #define GNOMON_SHARED_OUTLINE_MEASURE_H
@@ -43,8 +44,7 @@ GN_INLINE GnOutline gn_outline_of(const GnMeasure* m, const gn_f32* lo, const gn
   return outline;
 }
 
-// The corner as the measure sees it: parallel rays in the plane across them, near-plane areas at distance 1, yaw and pitch
-// in space.
+// The corner as the measure sees it: near-plane areas at distance 1, yaw and pitch in space.
 GN_INLINE void gn_outline_corner(const GnMeasure* m, const GnOutline* outline, gn_u32 a, gn_u32 b, gn_u32 c, gn_f32* p) {
   gn_u32 i;
   for (i = 0u; i < 3u; ++i) p[i] = outline->at[a][i] + outline->at[b][i] + outline->at[c][i];
@@ -84,10 +84,9 @@ GN_INLINE gn_f32 gn_cut_side_yaw_pitch(const GnMeasure* m, const gn_f32* a, cons
 }
 
 // The measure of what the outline holds. Heights are taken from one of its corners: those of small boxes keep their digits.
-GN_INLINE gn_f32 gn_outline_measure(const GnMeasure* m, const GnOutline* outline, gn_f32 unit) {
-  const gn_f32 scale = gn_kind_of(m) == GN_MEASURE_WINDOW ? unit : 1.0f;
-  const gn_f32 half_width = m->culled ? m->half_width * scale : GN_FLOAT_MAX;
-  const gn_f32 half_height = m->culled ? m->half_height * scale : GN_FLOAT_MAX;
+GN_INLINE gn_f32 gn_outline_measure(const GnMeasure* m, const GnOutline* outline) {
+  const gn_f32 half_width = m->culled ? m->half_width : GN_FLOAT_MAX;
+  const gn_f32 half_height = m->culled ? m->half_height : GN_FLOAT_MAX;
   const int by_angles = gn_kind_of(m) == GN_MEASURE_YAW_PITCH;
   gn_f32 corners[3 * 8], sum = 0.0f, level = 0.0f;
   GnSight sights[8];

@@ -148,17 +148,6 @@ GN_INLINE int gn_few_steps_serve(const GnMeasure* m, const GnFrameBox* box, cons
   return dx * dx + dy * dy + dz * dz < GN_MIDDLING_SEEN * distance;
 }
 
-// The measure of a box that no plane cuts, where it takes less than others do.
-GN_INLINE gn_f32 gn_uncut_measure(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi) {
-  const GnBoxes box = gn_boxes_of(lo, hi);
-  if (gn_kind_of(m) == GN_MEASURE_SOLID_ANGLE) return gn_first_lane(gn_whole_solid_angles(m, &box));
-  if (gn_kind_of(m) == GN_MEASURE_YAW_PITCH) return gn_first_lane(gn_few_step_measures(m, &box));
-  {
-    const gn_f32 dx = hi[0] - lo[0], dy = hi[1] - lo[1], dz = hi[2] - lo[2];
-    return gn_abs(m->forward[0]) * dy * dz + dx * (gn_abs(m->forward[1]) * dz + gn_abs(m->forward[2]) * dy);
-  }
-}
-
 // The precise measure.
 GN_INLINE gn_f32 gn_precise_measure(const GnMeasure* m, const gn_f32* lo, const gn_f32* hi) {
   const gn_u32 kind = gn_kind_of(m);
@@ -172,16 +161,19 @@ GN_INLINE gn_f32 gn_precise_measure(const GnMeasure* m, const gn_f32* lo, const 
     unit = gn_power_near_reciprocal(largest);
   }
   {
+    const GnBoxes lanes = gn_boxes_of(lo, hi);
     const GnOutline outline = gn_outline_of(m, lo, hi, unit);
-    const gn_u32 cutting = gn_cutting_planes(m, &outline, unit);
+    gn_u32 cutting;
+    if (kind == GN_MEASURE_WINDOW && outline.ahead != 0u) return gn_first_lane(gn_window_measures(m, &lanes));
+    cutting = gn_cutting_planes(m, &outline, unit);
     if (cutting == GN_NONE) return 0.0f;
     if (kind == GN_MEASURE_YAW_PITCH) {
       const GnFrameBox box = gn_bounds_of(&outline);
       if (m->culled && gn_is_beyond_pitch(m, &box)) return 0.0f;
-      if (cutting == 0u && gn_few_steps_serve(m, &box, lo, hi, unit)) return gn_uncut_measure(m, lo, hi);
+      if (cutting == 0u && gn_few_steps_serve(m, &box, lo, hi, unit)) return gn_first_lane(gn_few_step_measures(m, &lanes));
     }
-    if (cutting == 0u && (kind == GN_MEASURE_SOLID_ANGLE || kind == GN_MEASURE_WINDOW)) return gn_uncut_measure(m, lo, hi);
-    if (outline.ahead != 0u && kind != GN_MEASURE_SOLID_ANGLE) return gn_outline_measure(m, &outline, unit);
+    if (cutting == 0u && kind == GN_MEASURE_SOLID_ANGLE) return gn_first_lane(gn_whole_solid_angles(m, &lanes));
+    if (outline.ahead != 0u && kind != GN_MEASURE_SOLID_ANGLE) return gn_outline_measure(m, &outline);
     return gn_faces_measure(m, &outline, cutting, unit);
   }
 }

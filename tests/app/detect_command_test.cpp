@@ -7,20 +7,14 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "run_program.h"
+#include "json_document.h"
 
 using nlohmann::json;
+using program::document_of;
 using program::Folder;
 using program::run;
 
 namespace {
-
-json document_of(const std::vector<std::string>& arguments) {
-  const auto outcome = run(arguments);
-  CAPTURE(outcome.err);
-  REQUIRE(outcome.status == 0);
-  return json::parse(outcome.out);
-}
 
 // Groups of one kind of rays and of one kind of group.
 std::size_t groups_of(const json& document, const std::string& rays, const std::string& kind) {

@@ -2,9 +2,10 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "run_program.h"
+#include "json_document.h"
 
 using nlohmann::json;
+using program::document_of;
 using program::run;
 
 namespace {
@@ -18,13 +19,6 @@ void require_keys(const json& document, const std::vector<const char*>& pointers
 }
 
 // Parses what must be one document and nothing else.
-json document_of(const std::vector<std::string>& arguments) {
-  const auto outcome = run(arguments);
-  CAPTURE(outcome.out, outcome.err);
-  REQUIRE(outcome.status == 0);
-  return json::parse(outcome.out);
-}
-
 const std::vector<const char*> kBuildKeys{"/version",
                                           "/commit",
                                           "/command",

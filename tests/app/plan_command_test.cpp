@@ -4,21 +4,11 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "run_program.h"
+#include "json_document.h"
 
 using nlohmann::json;
+using program::document_of;
 using program::run;
-
-namespace {
-
-json document_of(const std::vector<std::string>& arguments) {
-  const auto outcome = run(arguments);
-  CAPTURE(outcome.err);
-  REQUIRE(outcome.status == 0);
-  return json::parse(outcome.out);
-}
-
-}  // namespace
 
 TEST_CASE("plan explains a decision for each kind of rays") {
   const json plan = document_of({"plan", "gen:cottage:8k", "--rays", "primary,shadow", "--json"});

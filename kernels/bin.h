@@ -90,20 +90,38 @@ static inline uint in_first_bins(float8 primitive, GnBinning binning, uint axis,
 #endif
 }
 
+#if GN_WGS == 1
+static inline void clear_bins(__local GnBin* bins, __local uint* counts) {
+  uint i, k;
+  for (i = 0u; i + 8u <= 3u * GN_BINS; i += 8u) {
+    __local float8* eight = (__local float8*)(bins + i);
+    eight[0] = (float8)(INFINITY);
+    eight[1] = (float8)(INFINITY);
+    eight[2] = (float8)(INFINITY);
+    eight[3] = (float8)(INFINITY);
+    eight[4] = (float8)(INFINITY);
+    eight[5] = (float8)(INFINITY);
+    eight[6] = (float8)(INFINITY);
+    eight[7] = (float8)(INFINITY);
+    vstore8((uint8)(0u), 0, counts + i);
+  }
+  for (k = i; k < 3u * GN_BINS; ++k) {
+    *(__local float8*)(bins + k) = (float8)(INFINITY);
+    counts[k] = 0u;
+  }
+}
+#else
 static inline void clear_bins(__local GnBin* bins, __local uint* counts) {
   uint i;
   for (i = GN_LOCAL_ID; i < 3u * GN_BINS; i += GN_WGS) {
-#if GN_WGS == 1
-    *(__local float8*)(bins + i) = (float8)(INFINITY);
-#else
     __local int* keys = (__local int*)(bins + i);
     int k;
     for (k = 0; k < 8; ++k) keys[k] = ordered_of(k < 4 ? INFINITY : -INFINITY);
-#endif
     counts[i] = 0u;
   }
   GN_GROUP_BARRIER();
 }
+#endif
 
 #if GN_WGS == 1
 // In a serial group's local memory a bin holds its lower corner and its upper one negated: one minimum grows both.
@@ -236,6 +254,11 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
   const int steps = gn_has_steps(measure);
   float w[3];
   if (gn_linear_part(measure, how, w)) {
+#if !GN_PUBLISHED_BINS
+    if (measure->breaks_ties == 0u && node->count <= GN_FACE_SWEEP_MOST) {
+      sweep_by_faces(w, bins, counts, bin_count, node->count, best_of_axis);
+    } else
+#endif
     sweep_three_axes(measure, GN_SEEN_NOTHING, w, bins, counts, bin_count, node->count, best_of_axis);
   } else if (steps && how == GN_SEEN_ONE_STEP) {
     sweep_three_axes(measure, GN_SEEN_ONE_STEP, w, bins, counts, bin_count, node->count, best_of_axis);

@@ -195,42 +195,63 @@ static inline void write_empty_node(__global GnWideNode* out) {
   vstore8((uint8)(0u), 0, out->pad);
 }
 
-// Writes (or only numbers) the wide node on top of the stack and puts its children that are nodes in its place, the
-// first of them on top.
-static inline void emit_node(const GnTree* tree, GnEmission* work, int write) {
-  GnSlots slots;
+// Numbers the wide node on top of the stack, whose children are `slots`, and writes it (write != 0). Puts the children that
+// are nodes in its place, the first of them on top.
+static inline void enter_node(const GnTree* tree, GnEmission* work, const GnSlots* slots, int write) {
   const uint top = work->height - 1u;
   const uint depth = work->depths[top] + 1u;
   __global GnWideNode* out = tree->wide_nodes + work->places[top];
   uint slot, inner = 0u, entered = 0u;
-  gn_open_wide_node(tree->nodes, tree->forests, work->roots[top], tree->costs, &tree->weights, &tree->keys,
-                    &slots);
-  for (slot = 0u; slot < slots.count; ++slot) inner += slots.triangles[slot] == 0u;
+  for (slot = 0u; slot < slots->count; ++slot) inner += slots->triangles[slot] == 0u;
   if (write) write_empty_node(out);
-  for (slot = 0u; slot < slots.count; ++slot) {
-    const uint triangles = slots.triangles[slot];
+  for (slot = 0u; slot < slots->count; ++slot) {
+    const uint triangles = slots->triangles[slot];
     uint link;
     if (triangles == 0u) {
       const uint place = top + inner - 1u - entered;
       link = work->next_node + entered;
-      work->roots[place] = slots.node[slot];
+      work->roots[place] = slots->node[slot];
       work->places[place] = link;
       work->depths[place] = depth;
       entered += 1u;
     } else {
       link = gn_leaf_link(work->next_block, triangles);
-      if (write) write_leaf(tree, slots.node[slot], triangles, work->next_block);
+      if (write) write_leaf(tree, slots->node[slot], triangles, work->next_block);
       work->next_block += gn_blocks_of(triangles);
       work->largest_leaf = max(work->largest_leaf, triangles);
     }
     if (write) {
-      write_box(out, slot, tree->nodes + slots.node[slot]);
+      write_box(out, slot, tree->nodes + slots->node[slot]);
       out->links[slot] = link;
     }
   }
   work->next_node += inner;
   work->height = top + inner;
   work->deepest = max(work->deepest, depth);
+}
+
+static inline void open_top(const GnTree* tree, const GnEmission* work, GnSlots* slots) {
+  gn_open_wide_node(tree->nodes, tree->forests, work->roots[work->height - 1u], tree->costs, &tree->weights, &tree->keys, slots);
+}
+
+static inline void store_opened(__global GnOpened* out, const GnSlots* slots) {
+  uint slot;
+  for (slot = 0u; slot < GN_WIDTH; ++slot) out->node[slot] = slot < slots->count ? slots->node[slot] : GN_NONE;
+  for (slot = 0u; slot < GN_WIDTH; slot += 2u) {
+    const uint even = slot < slots->count ? slots->triangles[slot] : 0u;
+    const uint odd = slot + 1u < slots->count ? slots->triangles[slot + 1u] : 0u;
+    out->triangles[slot / 2u] = even | odd << 16;
+  }
+}
+
+static inline void load_opened(__global const GnOpened* from, GnSlots* slots) {
+  uint slot;
+  slots->count = 0u;
+  for (slot = 0u; slot < GN_WIDTH; ++slot) {
+    slots->node[slot] = from->node[slot];
+    slots->triangles[slot] = from->triangles[slot / 2u] >> (slot % 2u * 16u) & 0xffffu;
+    slots->count += slots->node[slot] != GN_NONE;
+  }
 }
 
 static inline void start_emission(GnEmission* work, uint root, uint place, uint depth, uint next_node,
@@ -249,25 +270,25 @@ static inline uint triangles_below(const GnTree* tree, uint node) {
   return gn_forest_of(tree->nodes, tree->forests, node, &tree->weights, tree->costs.block).triangles;
 }
 
-// What the wide nodes of a subtree are made from: its splits have neighbouring ranks, its triangles neighbouring places.
-static inline void expect_subtree(const GnTree* tree, uint root, int triangles) {
-  uint left = root, right = root, first, last;
-  if (tree->nodes[root].count > 0u) return;
-  do {
+// Ranks of a subtree's splits, which are neighbours: the first of them, and the last one's successor.
+static inline uint2 ranks_of(const GnTree* tree, uint root) {
+  uint left = root, right = root, first = 1u, last = 0u;
+  while (tree->nodes[left].count == 0u) {
     first = tree->nodes[left].first;
     left = first;
-  } while (tree->nodes[left].count == 0u);
-  do {
+  }
+  while (tree->nodes[right].count == 0u) {
     last = tree->nodes[right].first;
     right = last + 1u;
-  } while (tree->nodes[right].count == 0u);
-  expect_range(tree->nodes + first, (last + 2u - first) * sizeof(GnNode));
-  expect_range(tree->forests + (first - 1u) / 2u, ((last - first) / 2u + 1u) * sizeof(GnForest));
-  if (triangles) {
-    const uint begin = tree->nodes[left].first;
-    const uint end = tree->nodes[right].first + tree->nodes[right].count;
-    expect_range(tree->triangles + begin, (end - begin) * sizeof(GnLeafTriangle));
   }
+  return (uint2)((first - 1u) / 2u, (last + 1u) / 2u);
+}
+
+static inline void expect_triangles(const GnTree* tree, uint root) {
+  uint last = root;
+  const uint begin = gn_first_triangle(tree->nodes, root);
+  while (tree->nodes[last].count == 0u) last = tree->nodes[last].first + 1u;
+  expect_range(tree->triangles + begin, (tree->nodes[last].first + tree->nodes[last].count - begin) * sizeof(GnLeafTriangle));
 }
 
 #define GN_TREE_PARAMETERS                                                                                         \
@@ -303,7 +324,9 @@ __kernel void emit_top(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks, uint 
       task_count += 1u;
       work.height = top;
     } else {
-      emit_node(&tree, &work, write);
+      GnSlots slots;
+      open_top(&tree, &work, &slots);
+      enter_node(&tree, &work, &slots, write);
     }
   }
   numbers[0] = task_count;
@@ -313,15 +336,24 @@ __kernel void emit_top(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks, uint 
   numbers[4] = work.deepest;
 }
 
-// One work-item a subtree: how many wide nodes and blocks are below its root.
-__kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks, uint task_count) {
+// One work-item a subtree: how many wide nodes and blocks are below its root, and what each wide node's children are, from
+// the place of its first split in `opened` on: it has no more wide nodes than splits.
+__kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks, uint task_count, __global GnOpened* opened) {
   const uint index = (uint)get_global_id(0);
   const GnTree tree = GN_TREE;
   GnEmission work;
+  uint2 ranks;
   if (index >= task_count) return;
-  expect_subtree(&tree, tasks[index].root, 0);
+  ranks = ranks_of(&tree, tasks[index].root);
+  expect_range(nodes + 1u + 2u * ranks.x, (ranks.y - ranks.x) * 2u * sizeof(GnNode));
+  expect_range(forests + ranks.x, (ranks.y - ranks.x) * sizeof(GnForest));
   start_emission(&work, tasks[index].root, 0u, 0u, 0u, 0u);
-  while (work.height > 0u) emit_node(&tree, &work, 0);
+  for (opened += ranks.x; work.height > 0u; ++opened) {
+    GnSlots slots;
+    open_top(&tree, &work, &slots);
+    store_opened(opened, &slots);
+    enter_node(&tree, &work, &slots, 0);
+  }
   tasks[index].nodes_below = work.next_node;
   tasks[index].blocks_below = work.next_block;
   tasks[index].largest_leaf = work.largest_leaf;
@@ -329,14 +361,21 @@ __kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks,
 
 // One work-item a subtree: writes it. depth receives the depth of the deepest wide node, counted from 1.
 __kernel void emit_subtrees(GN_TREE_PARAMETERS, __global const GnCollapseTask* tasks, uint task_count,
-                            volatile __global uint* depth) {
+                            volatile __global uint* depth, __global const GnOpened* opened) {
   const uint index = (uint)get_global_id(0);
   const GnTree tree = GN_TREE;
   GnEmission work;
+  uint2 ranks;
   if (index >= task_count) return;
-  expect_subtree(&tree, tasks[index].root, 1);
+  ranks = ranks_of(&tree, tasks[index].root);
+  expect_range(nodes + 1u + 2u * ranks.x, (ranks.y - ranks.x) * 2u * sizeof(GnNode));
+  expect_triangles(&tree, tasks[index].root);
   start_emission(&work, tasks[index].root, tasks[index].node, tasks[index].depth, tasks[index].nodes_below,
                  tasks[index].blocks_below);
-  while (work.height > 0u) emit_node(&tree, &work, 1);
+  for (opened += ranks.x; work.height > 0u; ++opened) {
+    GnSlots slots;
+    load_opened(opened, &slots);
+    enter_node(&tree, &work, &slots, 1);
+  }
   atomic_max(depth, work.deepest);
 }

@@ -35,6 +35,29 @@ static inline void bin_few(__global const float8* primitives, uint count, GnBinn
     bin_at[2u * GN_FEW + at.z] = (uint)place[i].z;
   }
 }
+
+// Two primitives can be divided one way only, and every axis that divides them rates it alike: the first of those has it.
+// swaps: receives whether the second one is on the left. The plane is left out: there is nothing to partition.
+static inline GnSplit split_of_two(const GnMeasure* measure, int how, float8 first, float8 second, GnBinning binning,
+                                   uint* swaps) {
+  const int4 place = places_of(first, binning), other = places_of(second, binning);
+  GnSplit split = gn_no_split();
+  const uint axis = place.x != other.x ? 0u : place.y != other.y ? 1u : place.z != other.z ? 2u : GN_NONE;
+  *swaps = 0u;
+  if (axis != GN_NONE) {
+    float boxes[16];
+    const uint swapped = axis == 0u ? place.x > other.x : axis == 1u ? place.y > other.y : place.z > other.z;
+    vstore8(swapped ? second : first, 0, boxes);
+    vstore8(swapped ? first : second, 1, boxes);
+    split.axis = axis;
+    split.left_count = 1u;
+    split.left_measure = gn_box_measure(measure, how, boxes, boxes + 4);
+    split.right_measure = gn_box_measure(measure, how, boxes + 8, boxes + 12);
+    split.cost = split.left_measure + split.right_measure;
+    *swaps = swapped;
+  }
+  return split;
+}
 #else
 #define GN_FEW 0u
 #endif

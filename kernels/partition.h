@@ -104,11 +104,13 @@ static inline GnTwoBounds partition_range(__global const float8* from, __global 
   // Doubled centroids and their negatives side by side: one minimum grows a side's bounds.
   float8 left_bounds = (float8)(INFINITY), right_bounds = (float8)(INFINITY);
   const GnComparison comparison = comparison_of(side);
+  // Other numbers in the lanes that are nobody's: where all are the same, compilers compare one and spread the answer.
+  const float8 bounds_of_lanes = (float8)((float4)((float3)(comparison.bound), 0.0f), (float4)((float3)(comparison.bound), 0.0f));
   for (i = begin; i < end; ++i) {
     const float8 primitive = from[i];
     const float place = compared_place(from + i, i, side, comparison);
     const uint left = place < comparison.bound ? 1u : 0u;
-    const int8 is_left = (float8)(place) < (float8)(comparison.bound);
+    const int8 is_left = (float8)(place) < bounds_of_lanes;
     const float8 both = with_upper_negated(primitive + primitive.s45670123);
     to[left ? left_at : right_at] = primitive;
     left_at += left;

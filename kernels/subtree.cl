@@ -32,6 +32,46 @@ static inline void write_node(__global GnNode* node, const GnTask* task, uint fi
   node->count = count;
 }
 
+#if GN_FEW > 0
+// A leaf of one primitive.
+static inline void write_single(__global GnNode* node, float8 primitive, uint first) {
+  const float4 lo = primitive.lo, hi = primitive.hi;
+  vstore3(lo.xyz, 0, node->lo);
+  vstore3(hi.xyz, 0, node->hi);
+  node->first = first;
+  node->count = 1u;
+}
+
+// Builds a node of two primitives, unless its halves can only be told by their position, and says whether it did.
+// deepest: raised to the depth of its leaves.
+static inline int build_pair(__global const float8* from, const GnTask* task, GnBinning binning, const GnHeuristic* heuristic,
+                             int how, const GnNodeView* view, __global GnNode* nodes, __global uint* inner_rank,
+                             __global uint* order, uint* deepest) {
+  const uint begin = task->begin;
+  uint swaps;
+  const float8 first = from[begin], second = from[begin + 1u];
+  const GnSplit split = split_of_two(&heuristic->measure, how, first, second, binning, &swaps);
+  const int is_leaf = gn_becomes_leaf(heuristic, how, view, &split);
+  if (!is_leaf && split.axis == GN_NONE) return 0;
+  if (is_leaf) {
+    write_node(nodes + task->slot, task, begin, 2u);
+    order[begin] = index_in(first.s3);
+    order[begin + 1u] = index_in(second.s3);
+    *deepest = max(*deepest, task->depth);
+  } else {
+    const uint middle = begin + 1u;
+    write_node(nodes + task->slot, task, 2u * middle, 0u);
+    write_single(nodes + 2u * middle, swaps ? second : first, begin);
+    write_single(nodes + 2u * middle + 1u, swaps ? first : second, middle);
+    order[begin] = index_in((swaps ? second : first).s3);
+    order[middle] = index_in((swaps ? first : second).s3);
+    inner_rank[middle] = 1u;
+    *deepest = max(*deepest, task->depth + 1u);
+  }
+  return 1;
+}
+#endif
+
 // Enters the split into the task, or marks it a leaf by left_count == 0.
 static inline void decide(GnTask* task, const GnHeuristic* heuristic, int how, const GnNodeView* node,
                           const GnSplit* split) {
@@ -79,9 +119,17 @@ __kernel void build_subtrees(__global float8* primitives0, __global float8* prim
     GnSplit split = gn_no_split();
     GN_GROUP_BARRIER();
 
-    // Bin and choose; single triangles and nodes past median_depth need no bins.
-    const uint binned_end = count > 1u && task.depth < heuristic.rules.median_depth ? task.end : task.begin;
+    // Bin and choose; sure leaves and nodes past median_depth need no bins.
+    const uint is_binned = task.depth < heuristic.rules.median_depth && !gn_is_surely_leaf(&heuristic, how, &node) ? 1u : 0u;
+    const uint binned_end = is_binned ? task.end : task.begin;
     uint bin_count = GN_BINS;
+#if GN_FEW > 0
+    if (count == 2u && is_binned &&
+        build_pair(from, &task, binning, &heuristic, how, &node, nodes, inner_rank, order, &deepest)) {
+      top = height - 1u;
+      continue;
+    }
+#endif
 #if GN_FEW > 0
     uint bin_at[3 * GN_FEW];
     if (count <= GN_FEW && binned_end > task.begin) {

@@ -8,6 +8,9 @@
 
 #if GN_WGS == 1
 
+#define GN_BIN_AT(bins, axis, bin) (*(__local const float8*)((bins) + (axis)*GN_BINS + (bin)))
+#include "face_sweep.h"
+
 // Three boxes, lane by axis they were binned along.
 static inline GnBoxes boxes_of(float8 along_x, float8 along_y, float8 along_z) {
   GnBoxes box;
@@ -41,8 +44,6 @@ static inline GnExtents extents_of(float8 along_x, float8 along_y, float8 along_
 static inline int4 counts_at(__local const uint* counts, uint bin) {
   return (int4)((int)counts[bin], (int)counts[GN_BINS + bin], (int)counts[2u * GN_BINS + bin], 0);
 }
-
-#define GN_BIN_AT(bins, axis, bin) (*(__local const float8*)((bins) + (axis)*GN_BINS + (bin)))
 
 // How three boxes are weighed: `how` is a literal, as in gn_sweep_boxes. w: as gn_linear_part gives it. d: their extents.
 GN_LANES_INLINE float4 measures_of(const GnMeasure* measure, const int how, const float* w, float8 x, float8 y, float8 z,

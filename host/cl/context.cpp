@@ -118,6 +118,32 @@ Buffer Context::create_buffer(const std::string& name, std::size_t bytes) const 
   return buffer;
 }
 
+Buffer Context::share(const std::string& name, std::span<const std::byte> bytes) const {
+  if (bytes.empty()) throw Error(ErrorCode::kInvalidArgument, "nothing to share as buffer " + name);
+  if (!device_.is_cpu || !device_.unified_memory) {
+    Buffer copy = create_buffer(name, bytes.size());
+    upload(copy, bytes);
+    return copy;
+  }
+  if (const auto reason = why_not_fit(device_, name, bytes.size()))
+    throw Error(ErrorCode::kOutOfMemory, *reason);
+  cl_int status = CL_SUCCESS;
+  // Read-only for kernels, and mapped by nobody for writing.
+  void* const memory = const_cast<std::byte*>(bytes.data());
+  Buffer buffer{Handle(clCreateBuffer(context_.get(), CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes.size(),
+                                      memory, &status)),
+                name, bytes.size()};
+  check(status, "clCreateBuffer", "buffer " + name + ", " + std::to_string(bytes.size()) + " bytes");
+  return buffer;
+}
+
+void Context::wait_for_enqueued() const {
+  cl_event marker = nullptr;
+  check(clEnqueueMarkerWithWaitList(queue_.get(), 0, nullptr, &marker), "clEnqueueMarkerWithWaitList");
+  const Handle<cl_event> reached(marker);
+  check(clWaitForEvents(1, &marker), "clWaitForEvents");
+}
+
 void Context::upload(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t offset) const {
   if (bytes.empty()) return;
   require_range(buffer, offset, bytes.size());

@@ -59,6 +59,13 @@ class Context {
   // size, before asking the driver where the device's limits already rule it out.
   [[nodiscard]] Buffer create_buffer(const std::string& name, std::size_t bytes) const;
 
+  // A buffer of these bytes that kernels only read: where the device is the CPU the caller's own memory,
+  // which must stay as it is until nothing enqueued reads it (wait_for_enqueued), elsewhere a copy. Throws as
+  // create_buffer, also for no bytes.
+  [[nodiscard]] Buffer share(const std::string& name, std::span<const std::byte> bytes) const;
+  // Blocks until all that was enqueued before is complete.
+  void wait_for_enqueued() const;
+
   // Blocking copies by mapping (no copy at all behind it on unified memory). Bytes beyond the buffer are
   // refused.
   void upload(const Buffer& buffer, std::span<const std::byte> bytes, std::size_t offset = 0) const;

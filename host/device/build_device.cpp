@@ -58,6 +58,28 @@ DeviceBvh build_checked(const cl::Context& context, cl_mem triangles, std::uint3
   return build_balanced(context, triangles, count, {}, options, out, progress);
 }
 
+// The caller's triangles as a buffer, for as long as a build may read them: an abandoned one has commands on
+// their way.
+class Input {
+ public:
+  Input(const cl::Context& context, std::span<const Triangle> triangles)
+      : context_(context), buffer_(context.share("triangles", std::as_bytes(triangles))) {}
+  Input(const Input&) = delete;
+  Input& operator=(const Input&) = delete;
+  ~Input() {
+    try {
+      context_.wait_for_enqueued();
+    } catch (const Error&) {
+      // A device that fails here has failed the build before, or will fail whoever uses the tree.
+    }
+  }
+  [[nodiscard]] cl_mem memory() const { return buffer_.mem.get(); }
+
+ private:
+  const cl::Context& context_;
+  cl::Buffer buffer_;
+};
+
 }  // namespace
 
 DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> triangles,
@@ -66,10 +88,9 @@ DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> tri
   const std::vector<BufferNeed> needs = build_memory(context.device(), triangles.size(), options);
   if (triangles.empty()) return upload_bvh(context, {}, {});
   refuse_what_does_not_fit(context.device(), needs);
-  const cl::Buffer input = context.create_buffer("triangles", triangles.size_bytes());
-  context.upload_values<Triangle>(input, triangles);
+  const Input input(context, triangles);
   const auto count = static_cast<std::uint32_t>(triangles.size());
-  DeviceBvh tree = build_checked(context, input.mem.get(), count, options, needs, out, progress);
+  DeviceBvh tree = build_checked(context, input.memory(), count, options, needs, out, progress);
   if (out != nullptr) {
     out->total_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

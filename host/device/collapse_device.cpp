@@ -99,18 +99,20 @@ class Collapser {
     const std::size_t most_tasks = std::min<std::size_t>(
         std::max(1U, inner_count_), GN_WIDTH * most_above(tree_.triangle_count, limit_) + 1);
     const auto tasks = context_.create_buffer("collapse_tasks", most_tasks * sizeof(GnCollapseTask));
+    const auto opened =
+        context_.create_buffer("collapse_opened", std::max(1U, inner_count_) * sizeof(GnOpened));
     top(no_nodes_, no_nodes_, tasks, 0);
     const std::uint32_t task_count = numbers()[0];
     launch("collapse: count", "count_subtrees", task_count, tree_.nodes, forests_, tree_.leaf_triangles,
            no_nodes_, no_nodes_, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_,
-           keys_given_, tasks, task_count);
+           keys_given_, tasks, task_count, opened);
     DeviceWideBvh wide = allocate(tasks, task_count);
     top(wide.nodes, wide.blocks, tasks, 1);
     const cl::Buffer depth = context_.create_buffer("collapse_depth", sizeof(std::uint32_t));
     context_.fill(depth, 0);
     launch("collapse: emit", "emit_subtrees", task_count, tree_.nodes, forests_, tree_.leaf_triangles,
            wide.nodes, wide.blocks, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_,
-           keys_given_, tasks, task_count, depth);
+           keys_given_, tasks, task_count, depth, opened);
     wide.depth = std::max(numbers()[4], context_.download_values<std::uint32_t>(depth, 1).front());
     return wide;
   }

@@ -124,6 +124,13 @@ GN_INLINE GnSplit gn_policy_split(const GnHeuristic* h, int how, const GnNodeVie
   return best;
 }
 
+// What a leaf's triangles are weighed by. Where all axes are tried, splits are rated by the measure, and the parent's has
+// rated the node; a parent that was halved rates nothing.
+GN_INLINE gn_f32 gn_node_measure(const GnHeuristic* h, int how, const GnNodeView* node) {
+  const int rated = h->rules.axes == GN_AXES_ALL && node->how == (gn_u32)how && node->probability < GN_FLOAT_MAX;
+  return rated ? node->probability : gn_box_measure(&h->measure, how, node->lo, node->hi);
+}
+
 // Whether a node is a leaf. split is what the policy found for it, probability and depth the node's own.
 GN_INLINE int gn_becomes_leaf(const GnHeuristic* h, int how, const GnNodeView* node, const GnSplit* split) {
   const GnRules* rules = &h->rules;
@@ -137,13 +144,17 @@ GN_INLINE int gn_becomes_leaf(const GnHeuristic* h, int how, const GnNodeView* n
   }
   if (node->count > rules->max_leaf_size) return 0;
   if (node->count == 1u || split->axis == GN_NONE) return 1;
-  {
-    // Where all axes are tried, splits are rated by the measure. A parent that was halved rates nothing, but its children
-    // find no split.
-    const int rated = rules->axes == GN_AXES_ALL && node->how == (gn_u32)how && node->probability < GN_FLOAT_MAX;
-    const gn_f32 measure = rated ? node->probability : gn_box_measure(&h->measure, how, node->lo, node->hi);
-    return gn_leaf_is_better(split, measure, node->count, rules->cost_traversal, rules->cost_triangle);
-  }
+  return gn_leaf_is_better(split, gn_node_measure(h, how, node), node->count, rules->cost_traversal, rules->cost_triangle);
+}
+
+// Whether a node is a leaf whatever split it may find: no split costs less than nothing.
+GN_INLINE int gn_is_surely_leaf(const GnHeuristic* h, int how, const GnNodeView* node) {
+  const GnRules* rules = &h->rules;
+  gn_f32 measure;
+  if (node->count == 1u) return 1;
+  if (rules->leaf_rule == GN_LEAF_PUBLISHED || node->count > rules->max_leaf_size) return 0;
+  measure = gn_node_measure(h, how, node);
+  return rules->cost_triangle * ((gn_f32)node->count * measure) <= rules->cost_traversal * measure;
 }
 
 #endif

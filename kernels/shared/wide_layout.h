@@ -51,6 +51,13 @@ typedef struct GnForest {
 } GnForest;
 GN_SIZE_IS(GnForest, 32);
 
+// The children of a wide node as they were found when it was counted (GnSlots), for whoever writes it.
+typedef struct GnOpened {
+  gn_u32 node[8];       // of the binary tree; GN_NONE behind the last
+  gn_u32 triangles[4];  // sixteen bits each, the even ones' below: GN_MAX_WIDE_LEAF at most
+} GnOpened;
+GN_SIZE_IS(GnOpened, 48);
+
 // A subtree whose wide nodes one work-item writes: its root, where that and what is below it go.
 typedef struct GnCollapseTask {
   gn_u32 root;         // in the binary tree

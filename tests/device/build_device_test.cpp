@@ -106,7 +106,7 @@ TEST_CASE("the tree does not depend on how the work is cut") {
 // Leaves of 255 triangles with 64 bins are more than a device that ends long loops can build.
 TEST_CASE("bins, leaf size, costs and median depth mean the same on the device", "[unlimited]") {
   const auto triangles = gnomon::test::soup(3000, 53);
-  for (const std::uint32_t bins : {2U, 8U, 16U, 64U}) {
+  for (const std::uint32_t bins : {2U, 5U, 8U, 16U, 64U}) {
     for (const std::uint32_t leaf : {1U, 8U, 255U}) {
       BuildOptions options = cut(1, 512, 256);
       options.bins = bins;
@@ -210,6 +210,24 @@ TEST_CASE("cancelling stops a build with its own error code") {
     FAIL("was not cancelled");
   } catch (const gnomon::Error& error) {
     REQUIRE(error.code() == gnomon::ErrorCode::kCancelled);
+  }
+}
+
+TEST_CASE("the caller's triangles may change as soon as a build has returned", "[portable]") {
+  const std::vector<GnTriangle> original = gnomon::test::soup(20000, 5);
+  for (const auto builder : {gnomon::Builder::kBalanced, gnomon::Builder::kFast, gnomon::Builder::kBest}) {
+    CAPTURE(to_string(builder));
+    BuildOptions options;
+    options.builder = builder;
+    std::vector<GnTriangle> triangles = original;
+    const auto tree = gnomon::build_device(context(), triangles, options);
+    std::fill(triangles.begin(), triangles.end(), GnTriangle{});
+    const auto order = context().download_values<std::uint32_t>(tree.order, tree.triangle_count);
+    const auto leaves = context().download_values<GnLeafTriangle>(tree.leaf_triangles, tree.triangle_count);
+    for (std::uint32_t i = 0; i < tree.triangle_count; ++i) {
+      REQUIRE(leaves[i].primitive == order[i]);
+      REQUIRE(std::equal(leaves[i].v1, leaves[i].v1 + 3, original[order[i]].v1));
+    }
   }
 }
 

@@ -70,11 +70,11 @@ inline SceneList scenes_from(int argc, char** argv) {
 }
 
 // GNOMON_DEVICE or the default choice, on one thread where that is PoCL.
-inline cl::Context one_thread_context() {
+inline cl::Context one_thread_context(const cl::ContextOptions& options = {}) {
   // Before the first OpenCL call: PoCL reads it once.
   setenv("POCL_MAX_PTHREAD_COUNT", "1", 0);
   const char* choice = std::getenv("GNOMON_DEVICE");
-  return cl::Context(cl::choose_device(cl::list_devices(), choice == nullptr ? "" : choice));
+  return cl::Context(cl::choose_device(cl::list_devices(), choice == nullptr ? "" : choice), options);
 }
 
 }  // namespace gnomon::bench

@@ -253,14 +253,19 @@ static inline GnSplit cheapest_split(const GnHeuristic* heuristic, int how, cons
   const GnMeasure* measure = &heuristic->measure;
   const int steps = gn_has_steps(measure);
   float w[3];
-  if (gn_linear_part(measure, how, w)) {
-#if !GN_PUBLISHED_BINS
-    if (measure->breaks_ties == 0u && node->count <= GN_FACE_SWEEP_MOST) {
-      sweep_by_faces(w, bins, counts, bin_count, node->count, best_of_axis);
-    } else
+  const int linear = gn_linear_part(measure, how, w);
+#if GN_PUBLISHED_BINS  // leave out the last plane
+  const int by_faces = 0;
+#else
+  const int by_faces = linear && node->count < GN_FACE_SWEEP_MOST;
 #endif
-    sweep_three_axes(measure, GN_SEEN_NOTHING, w, bins, counts, bin_count, node->count, best_of_axis);
-  } else if (steps && how == GN_SEEN_ONE_STEP) {
+  if (by_faces) {
+    if (measure->breaks_ties != 0u) {
+      sweep_by_faces(w, 1, bins, counts, bin_count, node->count, best_of_axis);
+    } else {
+      sweep_by_faces(w, 0, bins, counts, bin_count, node->count, best_of_axis);
+    }
+  } else if (!linear && steps && how == GN_SEEN_ONE_STEP) {
     sweep_three_axes(measure, GN_SEEN_ONE_STEP, w, bins, counts, bin_count, node->count, best_of_axis);
   } else if (steps && how == GN_SEEN_FEW_STEPS) {
     sweep_three_axes(measure, GN_SEEN_FEW_STEPS, w, bins, counts, bin_count, node->count, best_of_axis);

@@ -231,7 +231,8 @@ static inline void enter_node(const GnTree* tree, GnEmission* work, const GnSlot
 }
 
 static inline void open_top(const GnTree* tree, const GnEmission* work, GnSlots* slots) {
-  gn_open_wide_node(tree->nodes, tree->forests, work->roots[work->height - 1u], tree->costs, &tree->weights, &tree->keys, slots);
+  gn_open_wide_node(tree->nodes, tree->forests, work->roots[work->height - 1u], tree->costs, &tree->weights, &tree->keys,
+                    slots);
 }
 
 static inline void store_opened(__global GnOpened* out, const GnSlots* slots) {
@@ -288,7 +289,8 @@ static inline void expect_triangles(const GnTree* tree, uint root) {
   uint last = root;
   const uint begin = gn_first_triangle(tree->nodes, root);
   while (tree->nodes[last].count == 0u) last = tree->nodes[last].first + 1u;
-  expect_range(tree->triangles + begin, (tree->nodes[last].first + tree->nodes[last].count - begin) * sizeof(GnLeafTriangle));
+  expect_range(tree->triangles + begin,
+               (tree->nodes[last].first + tree->nodes[last].count - begin) * sizeof(GnLeafTriangle));
 }
 
 #define GN_TREE_PARAMETERS                                                                                         \
@@ -338,7 +340,8 @@ __kernel void emit_top(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks, uint 
 
 // One work-item a subtree: how many wide nodes and blocks are below its root, and what each wide node's children are, from
 // the place of its first split in `opened` on: it has no more wide nodes than splits.
-__kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks, uint task_count, __global GnOpened* opened) {
+__kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks, uint task_count,
+                             __global GnOpened* opened) {
   const uint index = (uint)get_global_id(0);
   const GnTree tree = GN_TREE;
   GnEmission work;

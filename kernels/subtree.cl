@@ -44,9 +44,9 @@ static inline void write_single(__global GnNode* node, float8 primitive, uint fi
 
 // Builds a node of two primitives, unless its halves can only be told by their position, and says whether it did.
 // deepest: raised to the depth of its leaves.
-static inline int build_pair(__global const float8* from, const GnTask* task, GnBinning binning, const GnHeuristic* heuristic,
-                             int how, const GnNodeView* view, __global GnNode* nodes, __global uint* inner_rank,
-                             __global uint* order, uint* deepest) {
+static inline int build_pair(__global const float8* from, const GnTask* task, GnBinning binning,
+                             const GnHeuristic* heuristic, int how, const GnNodeView* view, __global GnNode* nodes,
+                             __global uint* inner_rank, __global uint* order, uint* deepest) {
   const uint begin = task->begin;
   uint swaps;
   const float8 first = from[begin], second = from[begin + 1u];

@@ -1,6 +1,7 @@
 // The split sweep of a serial group, all three axes side by side: gn_sweep_axis, with the same operations in the same order
-// in each lane, so with the same split, for measures that have one form in all lanes (lanes.h): three face weights, or
-// steps. Bins are as a serial group leaves them (bin.h): lower corner, upper corner negated. Device only. Feeds bin.h.
+// in each lane, so with the same split, for measures that have one form in all lanes (lanes.h) but are more than face
+// weights (face_sweep.h). Bins are as a serial group leaves them (bin.h): lower corner, upper corner negated. Device only.
+// Feeds bin.h.
 #ifndef GNOMON_SWEEP_H
 #define GNOMON_SWEEP_H
 
@@ -49,16 +50,12 @@ static inline int4 counts_at(__local const uint* counts, uint bin) {
 GN_LANES_INLINE float4 measures_of(const GnMeasure* measure, const int how, const float* w, float8 x, float8 y, float8 z,
                                    GnExtents d) {
   const float4 linear = gn_weighed_faces(w, d.x, d.y, d.z);
-  if (how == GN_SEEN_NOTHING) return linear;
   const GnBoxes box = boxes_of(x, y, z);
   return measure->area_scale * gn_lane_measures(measure, how, &box) + linear;
 }
 
-// The cheapest split of every axis, to best_of_axis; axis == GN_NONE where there is none: on an axis without
-// extent all are in the first bin, and no plane divides them. how: GN_SEEN_NOTHING where the face weights w
-// measure all, else GN_SEEN_ONE_STEP, GN_SEEN_FEW_STEPS, GN_SEEN_WHOLE or GN_SEEN_CUT. w: as gn_linear_part
-// gives it. bin_count: at most GN_BINS. Steps are not taken for bins that are empty on all axes, as small
-// nodes' are.
+// As sweep_by_faces. how: GN_SEEN_ONE_STEP, GN_SEEN_FEW_STEPS, GN_SEEN_WHOLE or GN_SEEN_CUT. w: as gn_linear_part gives it.
+// Steps are not taken for bins that are empty on all axes, as small nodes' are.
 GN_LANES_INLINE void sweep_three_axes(const GnMeasure* measure, const int how, const float* w, __local const GnBin* bins,
                                       __local const uint* counts, uint bin_count, uint count,
                                       __local GnSplit* best_of_axis) {
@@ -70,7 +67,7 @@ GN_LANES_INLINE void sweep_three_axes(const GnMeasure* measure, const int how, c
   uint i, axis;
   for (i = bin_count - 1u; i > 0u; --i) {
     const int4 here = counts_at(counts, i);
-    if (how == GN_SEEN_NOTHING || (here.x | here.y | here.z) != 0) {
+    if ((here.x | here.y | here.z) != 0) {
       x = GN_VMIN(GN_BIN_AT(bins, 0u, i), x);
       y = GN_VMIN(GN_BIN_AT(bins, 1u, i), y);
       z = GN_VMIN(GN_BIN_AT(bins, 2u, i), z);
@@ -92,7 +89,7 @@ GN_LANES_INLINE void sweep_three_axes(const GnMeasure* measure, const int how, c
   seen = (int4)(0);
   for (i = 0u; i < GN_PLANES_BETWEEN(bin_count); ++i) {
     const int4 here = counts_at(counts, i);
-    if (how != GN_SEEN_NOTHING && (here.x | here.y | here.z) == 0) continue;
+    if ((here.x | here.y | here.z) == 0) continue;
     x = GN_VMIN(GN_BIN_AT(bins, 0u, i), x);
     y = GN_VMIN(GN_BIN_AT(bins, 1u, i), y);
     z = GN_VMIN(GN_BIN_AT(bins, 2u, i), z);

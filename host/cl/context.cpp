@@ -14,6 +14,8 @@ namespace gnomon::cl {
 
 namespace {
 
+constexpr std::uint64_t kDefaultSpareBytes = std::uint64_t{512} << 20U;
+
 // A mapping of part of a buffer, undone when it goes.
 class Mapping {
  public:
@@ -97,8 +99,8 @@ void Context::finish_setup(const ContextOptions& options) {
     throw Error(ErrorCode::kDevice, device_.name + " is big-endian, which gnomon does not support");
   }
   profiles_ = (flags & CL_QUEUE_PROFILING_ENABLE) != 0;
-  large_pages_ =
-      std::make_unique<LargePages>(std::min<std::uint64_t>(options.spare_bytes, device_.global_memory / 8));
+  const std::uint64_t default_spare = std::min(kDefaultSpareBytes, device_.global_memory / 8);
+  large_pages_ = std::make_unique<LargePages>(options.spare_bytes.value_or(default_spare));
   programs_ = std::make_unique<ProgramStore>(context_.get(), device_, options);
   device_.loop_limit = measure_loop_limit(*this);
 }

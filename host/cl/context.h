@@ -27,9 +27,9 @@ struct Buffer {
 struct ContextOptions {
   bool profiling = true;  // event times per stage; adopted queues keep what they have
   bool use_cache = true;  // keep compiled programs on disk, in a folder of gnomon's own
-  // Large buffers of CPU devices leave their memory for later ones: up to so many bytes, and an eighth of the
-  // device's memory. 0: none.
-  std::size_t spare_bytes = std::size_t{512} << 20U;
+  // Large buffers of CPU devices leave their memory for later ones, up to so many bytes. 0: none. Default:
+  // 512 MiB, but no more than an eighth of the device's memory.
+  std::optional<std::size_t> spare_bytes;
   // Which. Default: $XDG_CACHE_HOME/gnomon, else ~/.cache/gnomon; none on devices whose driver keeps programs
   // itself (DeviceInfo::keeps_programs).
   std::optional<std::filesystem::path> cache_folder;
@@ -60,8 +60,9 @@ class Context {
   [[nodiscard]] Buffer create_buffer(const std::string& name, std::size_t bytes) const;
 
   // A buffer of these bytes that kernels only read: where the device is the CPU the caller's own memory,
-  // which must stay as it is until nothing enqueued reads it (wait_for_enqueued), elsewhere a copy. Throws as
-  // create_buffer, also for no bytes.
+  // which must stay as it is until nothing enqueued reads it (wait_for_enqueued), elsewhere a copy. Aligned
+  // as the numbers in it are: kernels must not read it as vectors. Throws as create_buffer, also for no
+  // bytes.
   [[nodiscard]] Buffer share(const std::string& name, std::span<const std::byte> bytes) const;
   // Blocks until all that was enqueued before is complete.
   void wait_for_enqueued() const;

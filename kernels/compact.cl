@@ -1,6 +1,10 @@
 // The last pass of a build: the sparse node array (children of the split at leaf position m at 2m, 2m + 1) becomes
 // the dense tree, numbered by the rank of m among all splits, and triangles are copied in leaf order.
+#include "ahead.h"
 #include "shared/build_layout.h"
+
+// Triangles that are sent for before they are copied.
+#define GN_AHEAD 16u
 
 // Enters the nodes the level loop divided: large[i], all inner, belongs at slots[i] of the sparse array.
 __kernel void enter_large_nodes(__global const GnNode* large, __global const uint* slots, __global GnNode* sparse,
@@ -74,6 +78,8 @@ __kernel void gather_triangles(__global const float* triangles, __global const u
   __global const float* corners = triangles + 9u * (size_t)primitive;
   GnLeafTriangle out;
   int k;
+  GN_EXPECT(triangles + 9u * (size_t)order[min(place + GN_AHEAD, count - 1u)]);
+  GN_EXPECT(triangles + 9u * (size_t)order[min(place + GN_AHEAD, count - 1u)] + 8);
   for (k = 0; k < 3; ++k) {
     out.v0[k] = corners[k];
     out.v1[k] = corners[3 + k];

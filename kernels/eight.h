@@ -38,10 +38,9 @@ static inline uint bits_of_lanes(int8 lanes) {
 #if GN_EIGHT_AVX
   return (uint)__builtin_ia32_movmskps256(as_float8(lanes));
 #else
-  const int8 bits = lanes & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-  const int4 four = bits.lo | bits.hi;
-  const int2 two = four.lo | four.hi;
-  return (uint)(two.x | two.y);
+  // A bit of every lane's byte, and their sum in the highest byte.
+  const ulong bytes = as_ulong(convert_char8(lanes)) & 0x8040201008040201UL;
+  return (uint)((bytes * 0x0101010101010101UL) >> 56);
 #endif
 }
 
@@ -103,14 +102,11 @@ static inline void put_by_distance(float8 entries, uint mask, uint count, __glob
   vstore8(as_uint8(keys), 0, keys_out);
   vstore8(as_uint8(__builtin_ia32_permvarsi256(as_int8(vload8(0, links)), keys)), 0, links_out);
 #else
+  // Farthest first by their complements, which are as many, ascending; those that are not in the mask come last.
   const int8 chosen = ((int8)((int)mask) & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
-  uint sorted[8], i;
-  vstore8(as_uint8(sort_eight(chosen ? entry_keys(entries) : (int8)INT_MAX)), 0, sorted);
-  for (i = 0u; i < 8u; ++i) {  // all eight, whatever the count: what is behind it is written over
-    const uint place = (count - 1u - i) & 7u;
-    keys_out[place] = sorted[i];
-    links_out[place] = links[sorted[i] & 7u];
-  }
+  uint i;
+  vstore8(as_uint8(~sort_eight(chosen ? ~entry_keys(entries) : (int8)INT_MAX)), 0, keys_out);
+  for (i = 0u; i < 8u; ++i) links_out[i] = links[keys_out[i] & 7u];  // all eight: what is behind them is written over
 #endif
 }
 
@@ -124,12 +120,9 @@ static inline void put_places(float8 entries, uint mask, uint count, uint base, 
   vstore8(as_uint8(keys & 7) + base, 0, places_out);
 #else
   const int8 chosen = ((int8)((int)mask) & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
-  uint sorted[8], i;
-  vstore8(as_uint8(sort_eight(chosen ? entry_keys(entries) : (int8)INT_MAX)), 0, sorted);
-  for (i = 0u; i < count; ++i) {
-    keys_out[count - 1u - i] = sorted[i];
-    places_out[count - 1u - i] = base + (sorted[i] & 7u);
-  }
+  const int8 keys = ~sort_eight(chosen ? ~entry_keys(entries) : (int8)INT_MAX);
+  vstore8(as_uint8(keys), 0, keys_out);
+  vstore8(as_uint8(keys & 7) + base, 0, places_out);
 #endif
 }
 

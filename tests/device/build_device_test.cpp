@@ -76,6 +76,25 @@ TEST_CASE("triangles whose middles lie on the planes between bins go to the side
 
 // Few triangles: the simulator that watches every access takes its time. 70 are two chunks, a level of large
 // nodes, and subtrees.
+TEST_CASE("of planes that cost the same the one that divides most evenly is taken", "[serial][portable]") {
+  // Points on a line have no area: all planes between them cost nothing. Their places thin out, so that the
+  // most even plane is neither the first nor the middle one.
+  std::vector<GnTriangle> triangles;
+  for (int i = 0; i < 120; ++i) {
+    const auto x = static_cast<float>(i * i);
+    triangles.push_back(gnomon::test::triangle({x, 0, 0}, {x, 0, 0}, {x, 0, 0}));
+  }
+  for (const std::uint32_t breaks_ties : {0U, 1U}) {
+    for (const std::uint32_t group : {1U, 16U}) {
+      CAPTURE(breaks_ties, group);
+      BuildOptions options = cut(group, 0, 0);
+      options.measure.breaks_ties = breaks_ties;
+      options.max_leaf_size = 1;
+      require_same(triangles, options);
+    }
+  }
+}
+
 TEST_CASE("the serial flavour builds the same trees from a part of every awkward input", "[memcheck]") {
   for (auto& [name, triangles] : gnomon::test::awkward_inputs()) {
     CAPTURE(name);

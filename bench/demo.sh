@@ -4,6 +4,7 @@
 # pictures and the report are and what it cost.
 # Everything it makes is in build/demo/. GNOMON_DEVICE chooses another device; SCENE another scene, a file or gen:NAME.
 set -euo pipefail
+[[ " $* " != *" --help "* ]] || { sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit; }
 cd "$(dirname "$0")/.."
 bash tests/install_packages.sh build demo
 

@@ -2,6 +2,7 @@
 # Takes the picture of a report that README shows, of a page made from stored rows, in chromium. Not part of figures.sh:
 # browsers and fonts differ, so its bytes do. BUILD: the build folder, build by default.
 set -euo pipefail
+[[ " $* " != *" --help "* ]] || { sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit; }
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
 bash tests/install_packages.sh build tests

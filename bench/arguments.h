@@ -26,7 +26,7 @@ inline std::uint64_t count_from(const char* text, const std::string& what) {
   char* end = nullptr;
   const std::uint64_t count = std::strtoull(text, &end, 10);
   if (end == text || *end != '\0' || *text == '-' || count == 0)
-    throw std::invalid_argument(what + " \"" + text + "\": a number is wanted; --help says more");
+    throw std::invalid_argument(what + " \"" + text + "\": a count is wanted; --help says more");
   return count;
 }
 

@@ -45,7 +45,7 @@ row "picture" "$PWD/$out/atrium.png"
 row "boxes per pixel" "$PWD/$out/atrium-boxes.png"
 row "report" "$PWD/$out/report.html"
 echo
-head -n 5 $out/advice.txt
+sed '/^$/,$d' $out/advice.txt
 echo "Next: open the report in a browser; then ask for your own scene (glTF or OBJ), or a generated one:"
 echo "  $gnomon compare my.glb -o my.html        $gnomon compare gen:city:100k -o city.html"
 echo "  $gnomon --help teaches the rest"

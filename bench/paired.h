@@ -67,7 +67,7 @@ inline SceneList scenes_from(int argc, char** argv) {
   SceneList scenes;
   for (int i = 1; i < argc; i += 2)
     scenes.emplace_back(argv[i],
-                        count_from(i + 1 < argc ? argv[i + 1] : "", std::string(argv[i]) + " of triangles"));
+                        count_from(i + 1 < argc ? argv[i + 1] : "", std::string("triangles of ") + argv[i]));
   if (scenes.empty()) scenes = {{"city", 1'000'000}, {"atrium", 1'000'000}};
   return scenes;
 }

@@ -36,7 +36,7 @@ const char* const kProbe = R"(<script>
   const places = () => all('#pareto-accuracy .dot > g').map(g => g.getAttribute('transform'));
   const state = () => ({
     places: places(),
-    points: all('#pareto-accuracy .dot > line').map(l => ['x1', 'y1'].map(name => parseFloat(l.getAttribute(name)))),
+    points: all('#pareto-accuracy .stem > line').map(l => ['x1', 'y1'].map(name => parseFloat(l.getAttribute(name)))),
     times: all('tbody .time').map(cell => cell.textContent),
     letters: all('tbody tr').map(row => row.dataset.letter),
     words: document.querySelector('output').textContent,
@@ -125,7 +125,7 @@ std::vector<std::array<double, 2>> points_of(const std::string& page) {
   const auto number_after = [&](const std::string& name, std::size_t from) {
     return std::stod(page.substr(page.find(name, from) + name.size(), 12));
   };
-  for (std::size_t at = 0; (at = page.find("<g class=\"dot", at)) < end; ++at)
+  for (std::size_t at = 0; (at = page.find("<g class=\"stem", at)) < end; ++at)
     points.push_back({number_after(" x1=\"", at), number_after(" y1=\"", at)});
   return points;
 }

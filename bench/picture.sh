@@ -10,5 +10,5 @@ cmake --build "$build" --target compare_figures >/dev/null
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 "$build/bench/compare_figures" --page bench/results/compare.jsonl "$scratch/report.html"
-chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=1100,1210 --user-data-dir="$scratch/profile" \
+chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=1100,1330 --user-data-dir="$scratch/profile" \
   --screenshot="$PWD/bench/pictures/report.png" "file://$scratch/report.html" 2>/dev/null

@@ -211,9 +211,11 @@ class Adviser {
       out += (out.empty() ? "" : " ") + std::string("Not faster than ") + kBaseline +
              " for any kind: " + list_text(never) + ".";
     }
-    for (const auto& [method, other, gain] : not_shown_)
+    for (const auto& [method, other, gain] : not_shown_) {
+      if (method != kBaseline && verdict_of(gain_of(method, kAllKinds)) != Verdict::kFaster) continue;
       out += " No difference was shown between tracing by " + method + " and by " + other +
              ", which builds sooner: " + range(gain) + " times as fast.";
+    }
     return out;
   }
 

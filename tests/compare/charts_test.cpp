@@ -85,6 +85,18 @@ TEST_CASE("letters never cover each other, and a lone one stays on its point") {
   }
 }
 
+TEST_CASE("no line to a point is drawn over a letter") {
+  std::size_t scatters = 0;
+  for (const auto& [name, svg] : chart_files(sample_report())) {
+    if (svg.find("class=\"stem") == std::string::npos) continue;
+    ++scatters;
+    CAPTURE(name);
+    REQUIRE(count_of(svg, "class=\"stem") == count_of(svg, "class=\"dot"));
+    REQUIRE(svg.rfind("class=\"stem") < svg.find("class=\"dot"));
+  }
+  CHECK(scatters >= 4);
+}
+
 TEST_CASE("texts stay inside the picture, wherever ticks fall") {
   const std::regex text(
       R"re(<text x="([-0-9.]+)" y="[-0-9.]+"(?: text-anchor="(\w+)")?[^>]*>([^<]*)</text>)re");

@@ -24,6 +24,17 @@ using gnomon::Hit;
 using gnomon::Ray;
 using namespace gnomon::bench;
 
+constexpr const char* kHelp =
+    "accuracy_bench: what fast accuracy gains in speed, and what it costs in hits\n\n"
+    "  accuracy_bench [SCENE TRIANGLES]...\n\n"
+    "Beside watertight tracing of the same rays, one thread, processor time. One JSON row a scene, kind of "
+    "rays and flavour\n"
+    "on stdout, then one a case of the stability catalogue.\n\n"
+    "  SCENE   a generated scene (gnomon scene --help names them); default: atrium 300000, city and crowd "
+    "100000, random\n"
+    "          50000\n\n"
+    "GNOMON_DEVICE chooses another device.\n"
+    "Example:  accuracy_bench cottage 20000\n";
 constexpr std::uint64_t kSeed = 1;
 constexpr std::uint64_t kRays = 131'072;
 constexpr int kRounds = 9;
@@ -139,6 +150,7 @@ struct Runs {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (gnomon::bench::taught(argc, argv, kHelp)) return 0;
   try {
     const gnomon::cl::Context context = one_thread_context();
     const Runs runs{context};

@@ -229,10 +229,16 @@ std::string devices_page(const std::vector<Report>& reports) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const char* const usage =
+      "usage: compare_figures COMPARE.jsonl DEVICES.jsonl README.md RESULTS PICTURES [--check]\n"
+      "       compare_figures --page COMPARE.jsonl PAGE.html\n\n"
+      "Writes what README, the pages in RESULTS and the charts in PICTURES show of comparisons, from rows of "
+      "gnomon\n"
+      "compare --rows; --check: exits 1 where one is another. --page: the page of the first scene's rows, "
+      "without pictures.\n";
+  if (gnomon::bench::taught(argc, argv, usage)) return 0;
   if (argc < 6 && !(argc == 4 && std::string(argv[1]) == "--page")) {
-    std::fprintf(stderr,
-                 "usage: compare_figures COMPARE.jsonl DEVICES.jsonl README.md RESULTS PICTURES [--check]\n"
-                 "       compare_figures --page COMPARE.jsonl PAGE.html\n");
+    std::fputs(usage, stderr);
     return 2;
   }
   try {

@@ -4,6 +4,7 @@
 # pictures and the report are and what it cost.
 # Everything it makes is in build/demo/. GNOMON_DEVICE chooses another device; SCENE another scene, a file or gen:NAME.
 set -euo pipefail
+[[ " $* " != *" --help "* ]] || { sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit; }
 cd "$(dirname "$0")/.."
 bash tests/install_packages.sh build demo
 
@@ -44,7 +45,7 @@ row "picture" "$PWD/$out/atrium.png"
 row "boxes per pixel" "$PWD/$out/atrium-boxes.png"
 row "report" "$PWD/$out/report.html"
 echo
-head -n 5 $out/advice.txt
+sed '/^$/,$d' $out/advice.txt
 echo "Next: open the report in a browser; then ask for your own scene (glTF or OBJ), or a generated one:"
 echo "  $gnomon compare my.glb -o my.html        $gnomon compare gen:city:100k -o city.html"
 echo "  $gnomon --help teaches the rest"

@@ -31,6 +31,14 @@ using gnomon::InfluenceArea;
 using gnomon::Ray;
 using gnomon::bench::json;
 
+constexpr const char* kHelp =
+    "exit_rule_bench: do local trees with the exit rule answer as the global tree alone?\n\n"
+    "  exit_rule_bench CONFIGS.json SCENES [RAYS]\n\n"
+    "One JSON row a set-up, form of its area and rule on stdout.\n\n"
+    "  CONFIGS.json   the thesis' set-ups, as for gnomon reproduce --configs\n"
+    "  SCENES         the folder of their scenes\n"
+    "  RAYS           of each kind; default: 4000\n\n"
+    "GNOMON_DEVICE chooses another device.\n";
 constexpr std::uint64_t kSeed = 1;
 
 // Depth along the area's forward axis below which half of the triangles' middles lie.
@@ -165,13 +173,14 @@ gnomon::Scene load(const std::string& thesis_name, const std::filesystem::path& 
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (gnomon::bench::taught(argc, argv, kHelp)) return 0;
   if (argc < 3) {
-    std::fprintf(stderr, "usage: exit_rule_bench CONFIGS.json SCENES [RAYS]\n");
+    std::fputs(kHelp, stderr);
     return 2;
   }
   try {
     const gnomon::cl::Context context = gnomon::bench::one_thread_context();
-    const std::uint64_t count = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 4000;
+    const std::uint64_t count = argc > 3 ? gnomon::bench::count_from(argv[3], "RAYS") : 4000;
     std::map<std::string, SceneRun> scenes;
     for (const gnomon::SetUp& set_up : gnomon::read_set_ups(argv[1])) {
       if (gnomon::is_lost(set_up.scene)) continue;

@@ -18,6 +18,17 @@ namespace {
 using gnomon::bench::json;
 using namespace gnomon::bench;
 
+constexpr const char* kHelp =
+    "failure_map_bench: where heuristics predict badly, degenerate or lose work, and why\n\n"
+    "  failure_map_bench [--triangles N] [--rays N] [SCENE...]\n\n"
+    "Every way to build a tree under every light, by counts: nothing is timed, no device is needed. One JSON "
+    "row a line on\n"
+    "stdout; failure_map_page makes the page of them.\n\n"
+    "  SCENE          a generated scene that the map has; default: all of them\n"
+    "  --triangles    of each scene; default: what the map is made for\n"
+    "  --rays         of each kind; default: 4000\n\n"
+    "Example:  failure_map_bench --triangles 7000 --rays 200 cottage\n";
+
 struct Options {
   std::uint64_t triangles = 0;  // 0: what each scene's recipe says
   std::uint64_t rays = 4000;
@@ -26,11 +37,13 @@ struct Options {
 
 Options options_from(int argc, char** argv) {
   Options options;
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--triangles") == 0 && i + 1 < argc) {
-      options.triangles = std::strtoull(argv[++i], nullptr, 10);
-    } else if (std::strcmp(argv[i], "--rays") == 0 && i + 1 < argc) {
-      options.rays = std::strtoull(argv[++i], nullptr, 10);
+  int i = 1;
+  const auto value = [&](const char* name) { return count_from(i + 1 < argc ? argv[++i] : "", name); };
+  for (; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--triangles") == 0) {
+      options.triangles = value("--triangles");
+    } else if (std::strcmp(argv[i], "--rays") == 0) {
+      options.rays = value("--rays");
     } else {
       options.scenes.emplace_back(argv[i]);
     }
@@ -105,6 +118,7 @@ void run(const std::string& generator, const Options& options, Findings& finding
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (taught(argc, argv, kHelp)) return 0;
   try {
     const Options options = options_from(argc, argv);
     Findings findings;

@@ -5,6 +5,7 @@
 # ray_aware_is_current, scaling_is_current, stability_page_is_current, results_page_is_current and note_tables_are_current
 # hold what is stored against the same programs. BUILD: the build folder, build by default.
 set -euo pipefail
+[[ " $* " != *" --help "* ]] || { sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit; }
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
 bash tests/install_packages.sh build demo

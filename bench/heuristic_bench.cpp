@@ -22,6 +22,19 @@ namespace {
 using gnomon::bench::json;
 using gnomon::bench::spread_json;
 
+constexpr const char* kHelp =
+    "heuristic_bench: what building for a light's rays costs beside building for surface area\n\n"
+    "  heuristic_bench [--only MEASURE] [SCENE TRIANGLES]...\n\n"
+    "Whole builds on the device, one thread, processor time; rounds alternate the two. One JSON row a "
+    "measure on\n"
+    "stdout; a ratio above 1 says that the measure is slower.\n\n"
+    "  SCENE      a generated scene (gnomon scene --help names them); default: city and atrium of 1000000 "
+    "triangles\n"
+    "  --only     one of: plane; plane, culled; point, solid angle; point, solid angle, culled; point, near "
+    "plane,\n"
+    "             culled; point, yaw and pitch, culled (quote it)\n\n"
+    "GNOMON_DEVICE chooses another device.\n"
+    "Example:  heuristic_bench --only plane cottage 20000\n";
 constexpr int kRounds = 7;
 constexpr std::uint64_t kSeed = 1;
 
@@ -115,6 +128,7 @@ void run(const gnomon::cl::Context& context, const std::string& only, const std:
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (gnomon::bench::taught(argc, argv, kHelp)) return 0;
   try {
     std::string only;
     if (argc > 2 && std::string(argv[1]) == "--only") {

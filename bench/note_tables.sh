@@ -3,6 +3,7 @@
 # constants here. With --check it changes nothing and fails where a note is not what its rows give. Needs jq.
 #   note_tables.sh [--check]
 set -euo pipefail
+[[ " $* " != *" --help "* ]] || { sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit; }
 cd "$(dirname "$0")/.."
 check=${1:-}
 scratch=$(mktemp -d)

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "arguments.h"
+
 namespace page {
 
 inline std::string read(const std::string& path) {
@@ -80,11 +82,16 @@ inline bool settle(const std::string& file, const std::string& text, bool check)
 // or, for --check, exits 1 where the page is another.
 template <typename TextOf>
 int run(int argc, char** argv, const char* program, TextOf text_of) {
+  const std::string usage =
+      std::string("usage: ") + program +
+      " ROWS.jsonl... PAGE.md [--check]\n\nWrites the page that stored rows give, from them alone; "
+      "--check: exits 1 where the page is another.\nbash bench/figures.sh makes all of them.\n";
+  if (gnomon::bench::taught(argc, argv, usage.c_str())) return 0;
   std::vector<std::string> files(argv + 1, argv + argc);
   const bool check = !files.empty() && files.back() == "--check";
   if (check) files.pop_back();
   if (files.size() < 2) {
-    std::fprintf(stderr, "usage: %s ROWS.jsonl... PAGE.md [--check]\n", program);
+    std::fputs(usage.c_str(), stderr);
     return 2;
   }
   const std::string page = files.back();

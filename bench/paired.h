@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "arguments.h"
 #include "gnomon/base/stats.h"
 #include "gnomon/cl/context.h"
 
@@ -61,10 +62,12 @@ Paired measure(int rounds, const Ours& ours, const Peer& peer) {
 
 using SceneList = std::vector<std::pair<std::string, std::uint64_t>>;
 
-// SCENE TRIANGLES pairs, or two large scenes.
+// SCENE TRIANGLES pairs, or two large scenes. Throws invalid_argument for what is neither.
 inline SceneList scenes_from(int argc, char** argv) {
   SceneList scenes;
-  for (int i = 1; i + 1 < argc; i += 2) scenes.emplace_back(argv[i], std::strtoull(argv[i + 1], nullptr, 10));
+  for (int i = 1; i < argc; i += 2)
+    scenes.emplace_back(argv[i],
+                        count_from(i + 1 < argc ? argv[i + 1] : "", std::string("triangles of ") + argv[i]));
   if (scenes.empty()) scenes = {{"city", 1'000'000}, {"atrium", 1'000'000}};
   return scenes;
 }

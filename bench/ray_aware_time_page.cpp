@@ -185,8 +185,7 @@ class Page {
         "# What trees for given rays save in time\n\nWritten by `ray_aware_time_page` from "
         "`ray_aware_time.jsonl` "
         "(" +
-        std::to_string(rows_) + " rows of `ray_aware_time`, commit " + commit_ + ", " +
-        device_ +
+        std::to_string(rows_) + " rows of `ray_aware_time`, commit " + commit_ + ", " + device_ +
         ", one thread).\n\nTime: process CPU time of rounds in which all trees trace the same rays once, in "
         "an order "
         "that turns; median (least–most)\nof the rounds' ratios. Counts: 1.0 a box and 1.2 a triangle in the "

@@ -76,8 +76,14 @@ std::string table(const std::string& rows) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const char* const usage =
+      "usage: readme_table ROWS.jsonl EXAMPLE.cpp README.md [--check]\n\nWrites README's table of speed from "
+      "rows of "
+      "spine_bench, and its example from the file that tests compile; --check:\nexits 1 where README has "
+      "another.\n";
+  if (gnomon::bench::taught(argc, argv, usage)) return 0;
   if (argc < 4) {
-    std::fprintf(stderr, "usage: readme_table ROWS.jsonl EXAMPLE.cpp README.md [--check]\n");
+    std::fputs(usage, stderr);
     return 2;
   }
   try {

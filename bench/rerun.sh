@@ -7,6 +7,7 @@
 # GNOMON_DEVICES those of "devices". The thesis' set-ups, which
 # reproduce and exit_rule need, are named by THESIS_CONFIGS, THESIS_SCENES and THESIS_PUBLISHED.
 set -euo pipefail
+[[ " $* " != *" --help "* ]] || { sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit; }
 cd "$(dirname "$0")/.."
 build=${BUILD:-build}
 gnomon() { "$build/bin/gnomon" "$@"; }

@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 
+#include "arguments.h"
 #include "row_schema.h"
 
 namespace {
@@ -114,8 +115,13 @@ std::string read(const std::filesystem::path& file) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const char* const usage =
+      "usage: results_page PAGE.md [--check]\n\nWrites the page that describes stored rows from their "
+      "schema; --check: "
+      "exits 1 where it is another, or where the\nfolder's files of rows are not those of the schema.\n";
+  if (gnomon::bench::taught(argc, argv, usage)) return 0;
   if (argc < 2) {
-    std::fprintf(stderr, "usage: results_page PAGE.md [--check]\n");
+    std::fputs(usage, stderr);
     return 2;
   }
   try {

@@ -172,8 +172,13 @@ class Page {
 
 int main(int argc, char** argv) {
   const bool check = argc == 5 && std::string(argv[4]) == "--check";
+  const char* const usage =
+      "usage: scaling_page ROWS.jsonl PAGE.md PICTURES [--check]\n\nWrites the page and the charts of how "
+      "times grow from "
+      "rows of scaling_bench; --check: exits 1 where one is another.\n";
+  if (gnomon::bench::taught(argc, argv, usage)) return 0;
   if (argc != 4 && !check) {
-    std::fprintf(stderr, "usage: scaling_page ROWS.jsonl PAGE.md PICTURES [--check]\n");
+    std::fputs(usage, stderr);
     return 2;
   }
   try {

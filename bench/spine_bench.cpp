@@ -35,6 +35,16 @@ using gnomon::bench::spread_json;
 using gnomon::peers::EmbreeQuality;
 using gnomon::peers::EmbreeScene;
 
+constexpr const char* kHelp =
+    "spine_bench: how fast build and trace are beside Embree's MEDIUM on the same scene and rays\n\n"
+    "  spine_bench [SCENE TRIANGLES]...\n\n"
+    "One thread, processor time; rounds alternate the two. One JSON row a measurement on stdout; README's "
+    "table is made\n"
+    "of them. Ratios are claims, rates are direction only.\n\n"
+    "  SCENE   a generated scene (gnomon scene --help names them); default: city and atrium of 1000000 "
+    "triangles\n\n"
+    "GNOMON_DEVICE chooses another device.\n"
+    "Example:  spine_bench cottage 20000\n";
 constexpr int kRounds = 7;
 constexpr std::uint64_t kRays = 262144;
 constexpr std::uint64_t kSeed = 1;
@@ -157,6 +167,7 @@ class SceneBench {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (gnomon::bench::taught(argc, argv, kHelp)) return 0;
   try {
     const gnomon::cl::Context context = gnomon::bench::one_thread_context();
     for (const auto& [name, triangles] : gnomon::bench::scenes_from(argc, argv)) {

@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "arguments.h"
 #include "gnomon/areas/shared_area.h"
 #include "gnomon/base/stats.h"
 #include "gnomon/device/find_areas.h"
@@ -27,6 +28,15 @@ using gnomon::TopLevel;
 using gnomon::Vec3d;
 using nlohmann::json;
 
+constexpr const char* kHelp =
+    "top_level_bench: how fast the areas of a point are found, and how many candidates are false\n\n"
+    "  top_level_bench [AREAS LEVELS]...\n\n"
+    "The thesis' random areas and points, by list, tree and octree, on the host and on the device, one "
+    "thread, processor\n"
+    "time. One JSON row a structure on stdout.\n\n"
+    "  AREAS    how many; LEVELS: the octree's deepest, from 4 up; default: 4 7 10 7 20 9 40 7 80 7\n\n"
+    "GNOMON_DEVICE chooses another device.\n"
+    "Example:  top_level_bench 4 5\n";
 constexpr int kRounds = 7;
 constexpr std::size_t kQueries = 65536;
 constexpr std::uint64_t kSeed = 1;
@@ -214,6 +224,7 @@ class Bench {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (gnomon::bench::taught(argc, argv, kHelp)) return 0;
   // Before the first OpenCL call: PoCL reads it once.
   setenv("POCL_MAX_PTHREAD_COUNT", "1", 0);
   try {
@@ -221,8 +232,9 @@ int main(int argc, char** argv) {
     const gnomon::cl::Context context(
         gnomon::cl::choose_device(gnomon::cl::list_devices(), choice == nullptr ? "" : choice));
     std::vector<std::pair<std::uint32_t, std::uint32_t>> cases;
-    for (int i = 1; i + 1 < argc; i += 2)
-      cases.emplace_back(std::strtoul(argv[i], nullptr, 10), std::strtoul(argv[i + 1], nullptr, 10));
+    for (int i = 1; i < argc; i += 2)
+      cases.emplace_back(gnomon::bench::count_from(argv[i], "AREAS"),
+                         gnomon::bench::count_from(i + 1 < argc ? argv[i + 1] : "", "LEVELS"));
     if (cases.empty()) cases = {{4, 7}, {10, 7}, {20, 9}, {40, 7}, {80, 7}};
     for (const auto& [areas, levels] : cases) Bench(context, areas, levels).run();
   } catch (const std::exception& error) {

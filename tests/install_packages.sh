@@ -6,6 +6,7 @@
 #   install_packages.sh build demo     also what bench/demo.sh and bench/figures.sh read results with
 # Needs root or sudo, and only when something is missing. Never asks.
 set -euo pipefail
+[[ " $* " != *" --help "* ]] || { sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit; }
 
 declare -A packages=(
   [build]="g++ cmake ninja-build pkg-config ocl-icd-opencl-dev opencl-c-headers pocl-opencl-icd libtinygltf-dev

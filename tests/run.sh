@@ -2,6 +2,7 @@
 # Installs what is missing (Debian 12), builds, and runs the whole default test suite. Everything it makes is in build/.
 # Fails when a test fails, when there are no tests, and when there is no OpenCL device to run them on.
 set -euo pipefail
+[[ " $* " != *" --help "* ]] || { sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit; }
 cd "$(dirname "$0")/.."
 
 # PoCL asks them about the machine, and aborts without a word of why when they are not there.

@@ -25,6 +25,7 @@ class Adviser {
     choose();
     advice.best = best_;
     advice.use = use();
+    advice.how = how();
     if (best_ != kBaseline) {
       advice.gain = gain();
       advice.cost = cost();
@@ -72,7 +73,29 @@ class Adviser {
       sure.push_back(judged);
     }
     reigns_ = fastest_by_rays(sure);
+    for (std::string idle = without_use(); !idle.empty(); idle = without_use()) {
+      std::erase_if(sure, [&](const Line& line) { return line.method == idle; });
+      reigns_ = fastest_by_rays(sure);
+    }
     best_ = reigns_.empty() ? kBaseline : reigns_.back().method;
+  }
+
+  // Of two that reign one after the other, the second is to trace faster in every round, and the first to
+  // build faster. The name of one that was not shown to, or nothing.
+  std::string without_use() {
+    for (std::size_t i = 1; i < reigns_.size(); ++i) {
+      const std::string& before = reigns_[i - 1].method;
+      const std::string& after = reigns_[i].method;
+      const Spread trace = trace_gain(device_, before, after, kAllKinds, report_.clock);
+      if (verdict_of(trace) != Verdict::kFaster) {
+        not_shown_.push_back({after, before, trace});
+        return after;
+      }
+      // What is built in one round, because it takes so long, is not in question.
+      const Spread build = build_gain(device_, after, before, report_.clock);
+      if (build.count > 1 && verdict_of(build) != Verdict::kFaster) return before;
+    }
+    return "";
   }
 
   [[nodiscard]] std::string use() const {
@@ -91,6 +114,18 @@ class Adviser {
       }
     }
     return out;
+  }
+
+  // The program's options for what is advised.
+  [[nodiscard]] std::string how() const {
+    std::vector<std::string> items;
+    for (const Reign& reign : reigns_) {
+      const auto facts = std::find_if(device_.methods.begin(), device_.methods.end(),
+                                      [&](const MethodFacts& m) { return m.name == reign.method; });
+      if (facts != device_.methods.end() && !facts->options.empty())
+        items.push_back(reign.method + " is " + facts->options + " (" + facts->what + ")");
+    }
+    return items.empty() ? "" : "With gnomon build: " + list_text(items) + ".";
   }
 
   [[nodiscard]] std::string gain() const {
@@ -133,13 +168,15 @@ class Adviser {
     const auto line = [&](const std::string& name) {
       return *std::find_if(lines.begin(), lines.end(), [&](const Line& l) { return l.method == name; });
     };
-    std::string out = "It costs " + fixed(own_s / base_s, 2) + " times the build time (" + time_text(own_s) +
-                      " against " + time_text(base_s) + ") and " +
+    const Spread dearer = build_gain(device_, best_, kBaseline, report_.clock);
+    std::string out = "It costs " + (dearer.count > 1 ? range(dearer) : fixed(own_s / base_s, 2)) +
+                      " times the build time (" + time_text(own_s) + " against " + time_text(base_s) +
+                      (dearer.count > 1 ? ") and " : ", of one round) and ") +
                       fixed(static_cast<double>(own->bytes) / static_cast<double>(base->bytes), 2) +
                       " times the memory (" + bytes_text(static_cast<double>(own->bytes)) + " against " +
                       bytes_text(static_cast<double>(base->bytes)) + ").";
     if (const auto even = break_even(line(kBaseline), line(best_)); even && *even > 0.0)
-      out += " Tracing pays that back after " + count_text(*even) + " rays.";
+      out += " Tracing pays that back after about " + count_text(*even) + " rays.";
     return out;
   }
 
@@ -174,6 +211,11 @@ class Adviser {
       out += (out.empty() ? "" : " ") + std::string("Not faster than ") + kBaseline +
              " for any kind: " + list_text(never) + ".";
     }
+    for (const auto& [method, other, gain] : not_shown_) {
+      if (method != kBaseline && verdict_of(gain_of(method, kAllKinds)) != Verdict::kFaster) continue;
+      out += " No difference was shown between tracing by " + method + " and by " + other +
+             ", which builds sooner: " + range(gain) + " times as fast.";
+    }
     return out;
   }
 
@@ -201,6 +243,11 @@ class Adviser {
   const DeviceReport& device_;
   std::vector<std::string> candidates_;
   std::vector<Reign> reigns_;
+  struct NotShown {
+    std::string method, other;
+    Spread gain;  // of method over other, in tracing
+  };
+  std::vector<NotShown> not_shown_;
   std::string best_ = kBaseline;
 };
 

@@ -76,12 +76,13 @@ struct Wrong {
 // The first paragraphs of a page, in plain words; sentences without markup.
 struct Advice {
   std::string use;       // what to use
+  std::string how;       // the options of gnomon build that make it
   std::string gain;      // what it gains over kBaseline, by kind, and how sure
   std::string cost;      // what it costs
   std::string no_gain;   // where it is no better
   std::string accuracy;  // whose answers are right
   std::string best;      // the method recommended for many rays
-  std::vector<std::string> all() const { return {use, gain, cost, no_gain, accuracy}; }
+  std::vector<std::string> all() const { return {use, how, gain, cost, no_gain, accuracy}; }
 };
 [[nodiscard]] Advice advise(const Report& report, const DeviceReport& device);
 

@@ -64,13 +64,13 @@ std::string html_fact(const std::string& name, const std::string& value) {
 }
 
 std::string DevicePage::advice() const {
-  const auto is_method = [this](const std::string& word) {
-    return std::any_of(device_.methods.begin(), device_.methods.end(),
-                       [&](const MethodFacts& method) { return method.name == word; });
+  const auto is_whole = [this](const std::string& word) {
+    return is_option(word) || std::any_of(device_.methods.begin(), device_.methods.end(),
+                                          [&](const MethodFacts& method) { return method.name == word; });
   };
   std::string out;
   for (const std::string& sentence : advise(report_, device_).all())
-    if (!sentence.empty()) out += html_element("p", unbroken(sentence, is_method));
+    if (!sentence.empty()) out += html_element("p", unbroken(sentence, is_whole));
   return "<div class=\"advice\">\n" + out + "</div>\n";
 }
 

@@ -158,12 +158,17 @@ Svg draw(const Scatter& s, std::string* attributes) {
   }
   if (s.front) svg.path(front_path(at, pareto_front(points), kRight, kTop), "front");
   const auto letters = place_letters(at, {kLeft + 4.0, kRight - 4.0, bottom - 8.0});
+  // Letters come last: no line and no point is drawn over them.
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    svg.raw("<g class=\"stem " + color_of(s.dots[i].group) + "\">");
+    svg.line(at[i].x, at[i].y, letters[i].x, letters[i].y, "lead");
+    svg.mark(at[i].x, at[i].y, 2.0, 0, "true");
+    svg.raw("</g>\n");
+  }
   for (std::size_t i = 0; i < at.size(); ++i) {
     const Scatter::Dot& dot = s.dots[i];
     svg.raw("<g class=\"dot " + color_of(dot.group) + "\" data-letter=\"" + dot.letter + "\"" +
             data("y", at[i].y) + data("top", at[i].top) + ">");
-    svg.line(at[i].x, at[i].y, letters[i].x, letters[i].y, "lead");
-    svg.mark(at[i].x, at[i].y, 2.0, 0, "true");
     svg.raw("<g transform=\"translate(" + coordinate(letters[i].x) + " " + coordinate(letters[i].y) + ")\">");
     svg.mark(0.0, 0.0, kLetterRadius, dot.group, "", dot.tip);
     svg.text(0.0, 4.0, dot.letter, Anchor::kMiddle, "letter");

@@ -61,7 +61,7 @@ std::string line(const Report& report, const DeviceReport& device, const BuildRo
   out += prediction == nullptr ? ",,,"
                                : "," + text_of(prediction->predicted) + "," + text_of(prediction->measured) +
                                      "," + text_of(prediction->standard_error);
-  return out + "\n";
+  return out + "," + cell(report.version) + "," + cell(report.commit) + "," + cell(report.command) + "\n";
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ std::string to_csv(const Report& report) {
       "ray_count,trace_ns_per_ray,trace_ns_min,trace_ns_max,trace_rounds,boxes_per_ray,triangles_per_ray,"
       "judged,lost,"
       "false_hits,wrong_primitive,any_closest_disagree,max_t_error_ulp,predicted_cost,measured_cost,"
-      "measured_standard_error\n";
+      "measured_standard_error,version,commit,command\n";
   for (const DeviceReport& device : report.devices) {
     std::vector<std::string> kinds;
     for (const TraceRow& row : device.traces)

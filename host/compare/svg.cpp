@@ -12,8 +12,8 @@ const char* const kAnchors[] = {"start", "middle", "end"};
 // Lightness differs as well as hue, for paper without colour; shapes tell the rest.
 const char* const kStyle = R"(
 .chart{font:13px system-ui,sans-serif;--ink:#1a1a1a;--soft:#5c5c5c;--rule:#dcdcdc;--paper:#fff;
---c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#b0538c;--c4:#b87d00;--c5:#2f8fc4}
-.chart text{fill:var(--ink)}
+--c0:#0072b2;--c1:#c84e00;--c2:#005a45;--c3:#7b2a78;--c4:#1f1f1f;--c5:#8f8a6a}
+.chart text{fill:var(--ink);stroke:var(--paper);stroke-width:3;stroke-linejoin:round;paint-order:stroke}
 .chart .soft{fill:var(--soft)}
 .chart .head{font-weight:600}
 .chart .grid{stroke:var(--rule);stroke-width:1}
@@ -21,16 +21,16 @@ const char* const kStyle = R"(
 .chart .axis{stroke:var(--soft);stroke-width:1}
 .chart .lead{stroke:var(--soft);stroke-width:.8}
 .chart .front{fill:none;stroke:var(--soft);stroke-width:1.5}
-.chart .letter{font-size:12px;font-weight:600;fill:var(--paper)}
+.chart .letter{font-size:12px;font-weight:600;fill:var(--paper);stroke:none}
 .chart .mark{stroke:var(--paper);stroke-width:1}
-.chart .span{stroke-width:2.5;opacity:.45}
+.chart .span{stroke-width:2.5;opacity:.6}
 .chart .curve{fill:none;stroke-width:2}
 .chart .d1{stroke-dasharray:7 3}.chart .d2{stroke-dasharray:2 3}.chart .d3{stroke-dasharray:9 3 2 3}
 .chart .k0{--c:var(--c0)}.chart .k1{--c:var(--c1)}.chart .k2{--c:var(--c2)}
 .chart .k3{--c:var(--c3)}.chart .k4{--c:var(--c4)}.chart .k5{--c:var(--c5)}
 .chart .mark{fill:var(--c)}.chart .span,.chart .curve{stroke:var(--c)}
 @media screen and (prefers-color-scheme:dark){.chart{--ink:#e8e8e8;--soft:#a8a8a8;--rule:#3a3a3a;--paper:#16181b;
---c0:#5ab4f0;--c1:#ff8a3d;--c2:#3ecf9f;--c3:#e79ccb;--c4:#e6b13c;--c5:#9fd4f5}}
+--c0:#4a90f5;--c1:#f07a2a;--c2:#9ef0a0;--c3:#e5a1de;--c4:#fff;--c5:#838374}}
 )";
 
 }  // namespace

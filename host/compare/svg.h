@@ -35,8 +35,8 @@ class Svg {
 [[nodiscard]] std::string coordinate(double value);
 // The outline of Svg::mark.
 [[nodiscard]] std::string mark_path(double x, double y, double radius, unsigned index);
-// CSS of all charts: the palette is Okabe and Ito's, which eyes of all kinds tell apart, with lighter blues
-// on dark.
+// CSS of all charts. Every two of the six colours differ by 15 and more (CIE 1976 in L*a*b*) for eyes of all
+// kinds, and white letters on the first four can be read; shapes and dashes say the same without colour.
 [[nodiscard]] std::string chart_style();
 
 }  // namespace gnomon::compare

@@ -155,8 +155,8 @@ class TimeCharts {
         if (!never.empty()) row.remark = "never: " + list_text(never);
         if (!always.empty())
           row.remark += (row.remark.empty() ? "at once: " : "; at once: ") + list_text(always);
-        // It shares the line with the name.
-        if (row.remark.size() > std::min<std::size_t>(34, 50 - std::min<std::size_t>(50, row.name.size())))
+        // It shares the line with the name: some 45 letters of the usual fonts.
+        if (row.name.size() + row.remark.size() > 45)
           row.remark = std::to_string(never.size()) + " of " + std::to_string(all) + " kinds never";
       }
       plot.rows.push_back(std::move(row));

@@ -36,7 +36,7 @@ const char* const kProbe = R"(<script>
   const places = () => all('#pareto-accuracy .dot > g').map(g => g.getAttribute('transform'));
   const state = () => ({
     places: places(),
-    points: all('#pareto-accuracy .dot > line').map(l => ['x1', 'y1'].map(name => parseFloat(l.getAttribute(name)))),
+    points: all('#pareto-accuracy .stem > line').map(l => ['x1', 'y1'].map(name => parseFloat(l.getAttribute(name)))),
     times: all('tbody .time').map(cell => cell.textContent),
     letters: all('tbody tr').map(row => row.dataset.letter),
     words: document.querySelector('output').textContent,
@@ -66,6 +66,9 @@ const char* const kProbe = R"(<script>
           Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1 && Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) > 4)
           .map(([b]) => a + ' / ' + b));
     }),
+    tables_cut: all('.wide').filter(box => box.scrollWidth > box.clientWidth + 1).length,
+    slider_shown: slider.getClientRects().length > 0,
+    tallest_chart: Math.max(...all('figure[id] svg').map(svg => svg.getBoundingClientRect().height)),
     pictures: all('img').map(img => img.naturalWidth),
     first: state(),
     few: at(3),
@@ -125,7 +128,7 @@ std::vector<std::array<double, 2>> points_of(const std::string& page) {
   const auto number_after = [&](const std::string& name, std::size_t from) {
     return std::stod(page.substr(page.find(name, from) + name.size(), 12));
   };
-  for (std::size_t at = 0; (at = page.find("<g class=\"dot", at)) < end; ++at)
+  for (std::size_t at = 0; (at = page.find("<g class=\"stem", at)) < end; ++at)
     points.push_back({number_after(" x1=\"", at), number_after(" y1=\"", at)});
   return points;
 }
@@ -189,6 +192,20 @@ TEST_CASE("the page works in a browser: wide, on a phone, and in the dark") {
   const json phone = look_at(folder, page, 360);
   check_all(phone);
   REQUIRE(phone.at("smallest_text") >= 9.0);
+
+  REQUIRE(wide.at("slider_shown") == true);
+
+  // Its rules for paper, on a page of A4: 19 cm between margins are 718 pixels, 27.7 cm 1047.
+  std::string printed = page;
+  const std::string rule = "@media print{";
+  REQUIRE(printed.find(rule) != std::string::npos);
+  printed.replace(printed.find(rule), rule.size(), "@media all{");
+  const json paper = look_at(folder, printed, 718);
+  check_all(paper);
+  REQUIRE(paper.at("tables_cut") == 0);
+  REQUIRE(paper.at("slider_shown") == false);
+  REQUIRE(paper.at("tallest_chart") < 900);
+  REQUIRE(paper.at("smallest_text") > 9.0);
 
   const json dark = look_at(folder, page, 1200, "--blink-settings=preferredColorScheme=0");
   check_all(dark);

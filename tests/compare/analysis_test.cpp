@@ -110,15 +110,50 @@ TEST_CASE("advice names who is fastest from how many rays on, and never one with
       advice.use,
       Contains("for up to 167 rays per build use sah-fast, up to 2000 rays per build use sah-balanced, "
                "beyond 2000 rays use sah-best."));
+  CHECK(advice.how ==
+        "With gnomon build: sah-fast is --some (what sah-fast is), sah-balanced is --some (what sah-balanced "
+        "is) and "
+        "sah-best is --some (what sah-best is).");
   CHECK_THAT(advice.gain,
              Contains("2.00 (1.60 to 2.00) times as fast as sah-balanced") && Contains("75.0 % certainty"));
-  CHECK_THAT(advice.cost, Contains("4.00 times the build time (4.00 s against 1.00 s)") &&
+  CHECK_THAT(advice.cost, Contains("4.00 (4.00 to 4.00) times the build time (4.00 s against 1.00 s)") &&
                               Contains("2.00 times the memory (2.00 MiB against 1.00 MiB)") &&
-                              Contains("after 2000 rays"));
+                              Contains("after about 2000 rays"));
   CHECK_THAT(advice.no_gain, Contains("Not faster than sah-balanced for any kind: sah-fast."));
   // Three in 200, what none found leaves possible with 95 % certainty.
   CHECK_THAT(advice.accuracy, Contains("0 of 200 judged rays wrong (so fewer than 15000 in a million,") &&
                                   Contains("embree-default 4 of 200"));
+}
+
+TEST_CASE("a dearer build is advised only where it traces faster in every round than the one before it") {
+  auto report = sample_report();
+  DeviceReport& device = report.devices[0];
+  // Faster than the baseline in every round and than sah-best in all but one, by medians in both kinds.
+  gnomon::compare::test::add(
+      device, {"auto", Family::kMixture, {8.0, 8.0, 8.0}, {0.5, 0.5, 1.5}, {1.0, 1.0, 3.0}, 2 << 20, 0});
+  Advice advice = advise(report, device);
+  CAPTURE(advice.use, advice.no_gain);
+  CHECK(advice.best == "sah-best");
+  CHECK_THAT(advice.use, !Contains("auto"));
+  CHECK_THAT(advice.no_gain,
+             Contains("No difference was shown between tracing by auto and by sah-best, which builds "
+                      "sooner: 2.00 (0.83 to 2.00) times as fast."));
+  for (const char* kind : {"primary", "bounce"})
+    const_cast<TraceRow*>(trace_of(device, "auto", kind))->rounds.wall_s[2] = 0.5;
+  advice = advise(report, device);
+  CHECK(advice.best == "auto");
+  CHECK_THAT(advice.no_gain, !Contains("No difference"));
+  // One that is built no sooner, as far as rounds show, has nothing before the one that traces faster.
+  for (BuildRow& row : device.builds)
+    if (row.method == "sah-best") row.rounds = {{4.0, 4.0, 9.0}, {4.0, 4.0, 9.0}};
+  CHECK_THAT(advise(report, device).use, !Contains("sah-best") && Contains("use auto."));
+  // What is built in a single round is not held to that.
+  for (BuildRow& row : device.builds)
+    if (row.method == "auto") row.rounds = {{8.0}, {8.0}};
+  advice = advise(report, device);
+  CHECK_THAT(advice.use, Contains("sah-best") && Contains("use auto."));
+  CHECK_THAT(advice.cost,
+             Contains("It costs 8.00 times the build time (8.00 s against 1.00 s, of one round)"));
 }
 
 TEST_CASE("advice names the kinds of rays for which the best is not surely better") {

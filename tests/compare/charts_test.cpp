@@ -43,6 +43,22 @@ TEST_CASE("what is said of a row's kinds leaves room for its name") {
     if (chart.name != "break-even") continue;
     CHECK_THAT(chart.inside, Contains("1 of 2 kinds never") && !Contains("never: rays-of-a-long"));
   }
+  // At any length of the kind's name the two stay apart, and the kind is named where there is room.
+  std::size_t named = 0;
+  for (std::size_t letters = 1; letters < 40; ++letters) {
+    const std::string kind(letters, 'n');
+    for (TraceRow& row : device.traces)
+      if (row.kind != "primary") row.kind = kind;
+    for (const Chart& chart : charts_of(report, device)) {
+      if (chart.name != "break-even") continue;
+      const bool is_named = chart.inside.find(">never: " + kind + "<") != std::string::npos;
+      named += is_named ? 1 : 0;
+      CAPTURE(letters);
+      // 8.2: of an n in DejaVu Sans; between what is at the picture's ends.
+      REQUIRE((!is_named || 8.2 * static_cast<double>(letters + 7 + 24) < kChartWidth - 24.0));
+    }
+  }
+  CHECK(named > 5);
 }
 
 TEST_CASE("a chart's file stands alone and has both colour schemes") {
@@ -67,6 +83,18 @@ TEST_CASE("letters never cover each other, and a lone one stays on its point") {
       REQUIRE(std::hypot(letters[i].x - letters[j].x, letters[i].y - letters[j].y) >= 16.0);
     }
   }
+}
+
+TEST_CASE("no line to a point is drawn over a letter") {
+  std::size_t scatters = 0;
+  for (const auto& [name, svg] : chart_files(sample_report())) {
+    if (svg.find("class=\"stem") == std::string::npos) continue;
+    ++scatters;
+    CAPTURE(name);
+    REQUIRE(count_of(svg, "class=\"stem") == count_of(svg, "class=\"dot"));
+    REQUIRE(svg.rfind("class=\"stem") < svg.find("class=\"dot"));
+  }
+  CHECK(scatters >= 4);
 }
 
 TEST_CASE("texts stay inside the picture, wherever ticks fall") {

@@ -34,6 +34,53 @@ TEST_CASE("a report comes back from its JSON as it was, and draws the same page"
   CHECK(to_csv(back) == to_csv(report));
 }
 
+TEST_CASE("what is needed to repeat a comparison is in the page, in its JSON, and in every line of its CSV") {
+  Report report = sample_report();
+  report.version = "9.8.7";
+  report.options = {{"rays", "primary,bounce"}, {"seed of rays", "4711"}, {"bins", "61"}};
+  report.command = "gnomon compare scene.glb --rays primary,bounce --seed 4711 --clock cpu";
+  report.clock = "cpu";
+  const DeviceReport& device = report.devices[0];
+  const std::string page = report_page(report);
+  const std::string repeat =
+      page.substr(page.find("<h2>To repeat it</h2>"), page.find("</dl>") - page.find("<h2>To"));
+  const auto document = nlohmann::json::parse(to_json_text(report));
+  std::istringstream lines(to_csv(report));
+  std::string line;
+  std::getline(lines, line);
+  for (const char* column : {"device", "driver", "scene", "scene_hash", "version", "commit", "command"})
+    CHECK_THAT("," + line + ",", Contains("," + std::string(column) + ","));
+  std::vector<std::string> csv;
+  while (std::getline(lines, line)) csv.push_back(line);
+  REQUIRE(csv.size() == 4 * 2);
+  const std::string quoted_scene = "a </script> b";
+  for (const std::string& fact : {report.version, report.commit, report.command, quoted_scene,
+                                  report.scene_hash, device.name, device.driver}) {
+    CAPTURE(fact);
+    std::string escaped = fact;
+    for (const auto& [plain, entity] : {std::pair{"<", "&lt;"}, std::pair{">", "&gt;"}})
+      for (std::size_t at = 0; (at = escaped.find(plain, at)) != std::string::npos; ++at)
+        escaped.replace(at, 1, entity);
+    CHECK_THAT(repeat, Contains(escaped));
+    for (const std::string& text : csv) CHECK_THAT(text, Contains(fact));
+  }
+  CHECK_THAT(repeat, Contains(device.platform) && Contains(device.opencl) && Contains("processor time"));
+  for (const auto& [name, value] : report.options) {
+    CHECK_THAT(repeat, Contains("<dt>" + name + "</dt><dd>" + value + "</dd>"));
+    CHECK(document.at("options").at(name) == value);
+  }
+  for (const auto& [name, value] :
+       {std::pair{"version", report.version}, std::pair{"commit", report.commit},
+        std::pair{"command", report.command}, std::pair{"scene", report.scene},
+        std::pair{"scene_hash", report.scene_hash}, std::pair{"clock", report.clock}})
+    CHECK(document.at(name) == value);
+  const auto& facts = document.at("devices").at(0);
+  CHECK(facts.at("device") == device.name);
+  CHECK(facts.at("driver") == device.driver);
+  CHECK(facts.at("opencl") == device.opencl);
+  CHECK(facts.at("platform") == device.platform);
+}
+
 TEST_CASE("each row of the JSON stands by itself") {
   const auto document = nlohmann::json::parse(to_json_text(sample_report()));
   CHECK(document.at("schema") == kSchema);

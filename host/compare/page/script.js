@@ -47,6 +47,7 @@
     const number = name => parseFloat(svg.dataset[name]);
     const [lo, hi, left, right, top, bottom] = ['lo', 'hi', 'left', 'right', 'top', 'bottom'].map(number);
     const dots = [...svg.querySelectorAll('.dot')];
+    const stems = [...svg.querySelectorAll('.stem')];
     const points = dots.map(dot => ({
       x: left + (right - left) * (Math.log10(times.get(dot.dataset.letter)) - lo) / (hi - lo),
       y: parseFloat(dot.dataset.y),
@@ -54,14 +55,14 @@
     }));
     const letters = place_letters(points, {left: left + 4, right: right - 4, bottom: bottom - 8});
     dots.forEach((dot, i) => {
-      const [lead, mark, letter] = dot.children;
+      const [lead, mark] = stems[i].children;
       const {x, y} = points[i];
       lead.setAttribute('x1', x);
       lead.setAttribute('y1', y);
       lead.setAttribute('x2', letters[i].x);
       lead.setAttribute('y2', letters[i].y);
       mark.setAttribute('d', `M${x - 2} ${y}a2 2 0 1 0 4 0a2 2 0 1 0 -4 0z`);
-      letter.setAttribute('transform', `translate(${letters[i].x.toFixed(1)} ${letters[i].y.toFixed(1)})`);
+      dot.firstElementChild.setAttribute('transform', `translate(${letters[i].x.toFixed(1)} ${letters[i].y.toFixed(1)})`);
     });
     // Those that none beats in both: lower on the page is less.
     const order = points.map((point, i) => i).sort((a, b) => points[a].x - points[b].x || points[b].y - points[a].y);
@@ -93,7 +94,7 @@
       body.append(row);
     }
     section.querySelector('output').textContent =
-        `${count_text(rays)} rays after one build: ${data.baseline} takes ${time_text(total(base))}`;
+        `${count_text(rays)} rays${kind === 'all' ? '' : ` of ${kind}`} after one build: ${data.baseline} takes ${time_text(total(base))}`;
   }
 
   // report.html#rays=1e9&kind=bounce shows just that.

@@ -58,7 +58,7 @@ double covered(std::span<const GnTriangle> triangles, const BoxFrame& frame) {
 BoxFrame frame_along(const std::array<double, 3>& direction, std::span<const GnTriangle> triangles) {
   const double largest =
       std::max({std::fabs(direction[0]), std::fabs(direction[1]), std::fabs(direction[2])});
-  if (!(largest > 0.0) || !std::isfinite(largest)) {
+  if (!(largest > 0.0) || !std::isfinite(direction[0] + direction[1] + direction[2])) {
     throw Error(ErrorCode::kInvalidArgument,
                 "a frame is to stand along (" + std::to_string(direction[0]) + ", " +
                     std::to_string(direction[1]) + ", " + std::to_string(direction[2]) +

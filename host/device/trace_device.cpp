@@ -60,7 +60,8 @@ std::unique_ptr<RaySort> sort_in(const cl::Context& context, const cl::Buffer& n
   if (!options.sort_rays) return nullptr;
   if (frame) {  // rays begin where triangles are, not where boxes stand
     const float size = frame->size;
-    return std::make_unique<RaySort>(context, GnBounds{{-size, -size, -size}, 0.0F, {size, size, size}, 0.0F});
+    return std::make_unique<RaySort>(context,
+                                     GnBounds{{-size, -size, -size}, 0.0F, {size, size, size}, 0.0F});
   }
   return std::make_unique<RaySort>(context, box_of(context.download_values<Node>(nodes, 1).front()));
 }

@@ -59,10 +59,10 @@ BoxFrame frame_along(const std::array<double, 3>& direction, std::span<const GnT
   const double largest =
       std::max({std::fabs(direction[0]), std::fabs(direction[1]), std::fabs(direction[2])});
   if (!(largest > 0.0) || !std::isfinite(direction[0] + direction[1] + direction[2])) {
-    throw Error(ErrorCode::kInvalidArgument,
-                "a frame is to stand along (" + std::to_string(direction[0]) + ", " +
-                    std::to_string(direction[1]) + ", " + std::to_string(direction[2]) +
-                    "); a direction is finite and not zero");
+    throw Error(ErrorCode::kInvalidArgument, "a frame is to stand along (" + std::to_string(direction[0]) +
+                                                 ", " + std::to_string(direction[1]) + ", " +
+                                                 std::to_string(direction[2]) +
+                                                 "); a direction is finite and not zero");
   }
   const Axis z = unit({direction[0] / largest, direction[1] / largest, direction[2] / largest});
   const float size = size_of(triangles);
@@ -126,8 +126,9 @@ std::optional<std::string> fault_of(const BoxFrame& frame, std::span<const GnTri
 void refuse_frame(const std::optional<BoxFrame>& frame, const std::string& what) {
   if (!frame) return;
   throw Error(ErrorCode::kInvalidArgument,
-              what + " takes trees whose boxes stand where triangles do; this one's stand in a frame of their "
-                     "own (a plan's light-space tree)");
+              what +
+                  " takes trees whose boxes stand where triangles do; this one's stand in a frame of their "
+                  "own (a plan's light-space tree)");
 }
 
 }  // namespace gnomon

@@ -26,7 +26,8 @@ namespace gnomon {
 
 // What is wrong with a frame for these triangles, or nothing: rows beyond what gnomon/shared/box_frame.h
 // asks for, a size that is too small.
-[[nodiscard]] std::optional<std::string> fault_of(const BoxFrame& frame, std::span<const GnTriangle> triangles);
+[[nodiscard]] std::optional<std::string> fault_of(const BoxFrame& frame,
+                                                  std::span<const GnTriangle> triangles);
 
 // Throws Error{kInvalidArgument} where there is a frame: `what` takes no such trees.
 void refuse_frame(const std::optional<BoxFrame>& frame, const std::string& what);

@@ -33,7 +33,7 @@ struct CollapseOptions {
 struct WideBvh {
   std::vector<WideNode> nodes;
   std::vector<TriangleBlock> blocks;
-  std::uint32_t depth = 0;  // nodes on the longest way from the root to a leaf
+  std::uint32_t depth = 0;          // nodes on the longest way from the root to a leaf
   std::optional<BoxFrame> frame{};  // Bvh's
 };
 

@@ -51,7 +51,8 @@ inline std::vector<GnRay> rays_at_corners(const std::vector<GnTriangle>& triangl
       if (kind == 3) way[k] = k == axis ? 1.0 : 0.0;
     }
     const double distance = random.below(8) == 0 ? 0.0 : double{frame.size} * random.between(0.0F, far);
-    const double stretch = std::ldexp(1.0, static_cast<int>(random.below(4) == 0 ? random.below(180) : 90) - 90);
+    const double stretch =
+        std::ldexp(1.0, static_cast<int>(random.below(4) == 0 ? random.below(180) : 90) - 90);
     GnRay ray{};
     for (std::size_t k = 0; k < 3; ++k) {
       const double target = double{a[k]} + share * (double{b[k]} - double{a[k]});

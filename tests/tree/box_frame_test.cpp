@@ -102,8 +102,14 @@ TEST_CASE("framed trees meet what others do, whatever the scene's size and place
     float scale, offset;
   };
   std::uint32_t seed = 310;
-  for (const Place place : {Place{1.0F, 0.0F}, {1.0F, 1e3F}, {1.0F, 1e6F}, {1e12F, 0.0F}, {1e13F, -1e14F},
-                            {1e-18F, 0.0F}, {1e-18F, 1e-15F}, {1e-37F, 0.0F}}) {
+  for (const Place place : {Place{1.0F, 0.0F},
+                            {1.0F, 1e3F},
+                            {1.0F, 1e6F},
+                            {1e12F, 0.0F},
+                            {1e13F, -1e14F},
+                            {1e-18F, 0.0F},
+                            {1e-18F, 1e-15F},
+                            {1e-37F, 0.0F}}) {
     const Triangles triangles = gnomon::test::scaled(soup(200, seed++), place.scale, place.offset);
     for (const auto& direction : frame_directions()) {
       const Bvh tree = framed_tree(triangles, direction);

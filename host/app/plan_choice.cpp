@@ -94,6 +94,7 @@ PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Pro
   const auto start = std::chrono::steady_clock::now();
   PlanOptions how;
   how.choice = request.name;
+  how.light_space = task.light_space;
   const std::vector<PlanRays> rays = task.draw();
   out.plan = make_plan(task.scene.triangles, rays, how, device_builder(task.context), progress);
   out.chosen = choose_trees(*out.plan, rays, task.scene.triangles, task.plain.host, task.wanted, !by_name);
@@ -104,6 +105,10 @@ PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Pro
 bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour) {
   if (flavour != TraceFlavour::kAuto) return flavour != TraceFlavour::kThread;
   return device.is_cpu && device.loop_limit == 0;
+}
+
+bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour) {
+  return has_slots(device, flavour) && (flavour == TraceFlavour::kAuto || flavour == TraceFlavour::kWide);
 }
 
 void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree) {

@@ -1,0 +1,135 @@
+// Trees whose boxes stand in a frame, on the device: the bits of any other tree's hits, the reference's
+// visits, and a clear word from what cannot trace them.
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "gnomon/base/error.h"
+#include "gnomon/device/optimise_device.h"
+#include "gnomon/device/refit_device.h"
+#include "support/flavours.h"
+#include "support/framed.h"
+
+using gnomon::TraceFlavour;
+using gnomon::test::context;
+using gnomon::test::framed_tree;
+using gnomon::test::Rays;
+using gnomon::test::rays_at_corners;
+using gnomon::test::Traced;
+using gnomon::test::Triangles;
+
+namespace {
+
+Traced trace(const gnomon::DeviceBvh& tree, const Rays& rays, const gnomon::TraceOptions& options) {
+  const gnomon::Tracer tracer(context(), tree, options);
+  REQUIRE(tracer.flavour() == TraceFlavour::kWide);
+  return {tracer.closest(rays), tracer.any(rays)};
+}
+
+// By the instructions of the device's compiler and without, sorted and not; counted, with the reference's
+// visits. Returns how many rays hit.
+std::size_t require_other_trees_answers(const Triangles& triangles, const gnomon::test::Direction& direction,
+                                        const Rays& rays, const gnomon::BuildOptions& options) {
+  const auto framed = gnomon::upload_bvh(context(), framed_tree(triangles, direction, options), triangles);
+  const auto plain = gnomon::build_device(context(), triangles);
+  const Traced expected = gnomon::test::trace(plain, rays, TraceFlavour::kThread);
+  for (const bool portable : {false, true}) {
+    gnomon::TraceOptions how;
+    how.portable = portable;
+    gnomon::test::require_same_answers(expected, trace(framed, rays, how));
+    how.sort_rays = true;
+    gnomon::test::require_same_answers(expected, trace(framed, rays, how));
+    how.sort_rays = false;
+    how.counters = true;
+    const Traced counted = trace(framed, rays, how);
+    gnomon::test::require_same_answers(expected, counted);
+    gnomon::test::require_reference_work(framed, triangles, rays, counted);
+  }
+  std::size_t met = 0;
+  for (const std::uint32_t occluded : expected.any.occluded) met += occluded;
+  return met;
+}
+
+}  // namespace
+
+TEST_CASE("framed trees give other trees' bits on a small soup", "[portable][memcheck]") {
+  const auto triangles = gnomon::test::soup(120, 420, 1.0F);
+  const auto tree = framed_tree(triangles, {1, 1, 1});
+  const Rays rays = rays_at_corners(triangles, *tree.frame, 60, 421, 2.0F);
+  const auto plain = gnomon::build_device(context(), triangles);
+  const auto framed = gnomon::upload_bvh(context(), tree, triangles);
+  const Traced expected = gnomon::test::trace(plain, rays, TraceFlavour::kThread);
+  gnomon::test::require_same_answers(expected, trace(framed, rays, {}));
+}
+
+TEST_CASE("framed trees give other trees' bits and the reference's visits, from near and far",
+          "[unlimited]") {
+  std::uint32_t seed = 430;
+  for (const float offset : {0.0F, 1e4F}) {
+    for (const std::uint32_t leaf : {1U, 8U, 40U}) {
+      const auto triangles = gnomon::test::soup(800, seed++, 0.5F, offset);
+      for (const auto& direction : gnomon::test::frame_directions()) {
+        const auto frame = gnomon::frame_along(direction, triangles);
+        CAPTURE(offset, leaf, direction[0]);
+        Rays rays = rays_at_corners(triangles, frame, 600, seed++, 2.0F);
+        const Rays far = rays_at_corners(triangles, frame, 200, seed++, 1e5F);
+        rays.insert(rays.end(), far.begin(), far.end());
+        const Rays awkward = gnomon::test::awkward_rays(200, seed++);
+        rays.insert(rays.end(), awkward.begin(), awkward.end());
+        REQUIRE(require_other_trees_answers(triangles, direction, rays, gnomon::test::lazy_leaves_of(leaf)) >
+                100);
+      }
+    }
+  }
+}
+
+TEST_CASE("framed trees give other trees' bits on every shape, huge and tiny, and from beyond all bounds",
+          "[unlimited]") {
+  for (const auto& shape : gnomon::test::wide_shapes()) {
+    CAPTURE(shape.name);
+    const auto frame = gnomon::frame_along({0.3, -0.9, 0.2}, shape.triangles);
+    Rays rays = gnomon::test::awkward_rays(60, 440);
+    if (!shape.triangles.empty()) {
+      const Rays aimed = rays_at_corners(shape.triangles, frame, 100, 441, 3.0F);
+      rays.insert(rays.end(), aimed.begin(), aimed.end());
+    }
+    for (const float huge : {1e30F, 3.4e38F})
+      rays.push_back(gnomon::test::ray({huge, -huge, huge}, {-1, 1, -1}));
+    require_other_trees_answers(shape.triangles, {0.3, -0.9, 0.2}, rays, shape.options);
+  }
+  for (const float scale : {1e12F, 1e-18F}) {
+    CAPTURE(scale);
+    const auto triangles = gnomon::test::scaled(gnomon::test::soup(300, 442), scale, 3.0F * scale);
+    const auto frame = gnomon::frame_along({1, 1, 1}, triangles);
+    REQUIRE(require_other_trees_answers(triangles, {1, 1, 1},
+                                        rays_at_corners(triangles, frame, 500, 443, 2.0F), {}) > 100);
+  }
+}
+
+TEST_CASE("frames go with a tree through the device, and are refused where they would be lost",
+          "[unlimited]") {
+  const auto triangles = gnomon::test::soup(200, 450);
+  const auto host = framed_tree(triangles, {1, 2, 3});
+  auto tree = gnomon::upload_bvh(context(), host, triangles);
+  REQUIRE(tree_hash(download_bvh(context(), tree)) == tree_hash(host));
+  const auto moved = download_bvh(context(), gnomon::optimise_device(context(), tree));
+  REQUIRE(moved.frame);
+  REQUIRE(tree_hash(moved) == tree_hash(gnomon::optimise_reference(host)));
+  auto wide = collapse_device(context(), tree);
+  REQUIRE(tree_hash(download_wide(context(), wide)) ==
+          tree_hash(gnomon::collapse_reference(host, triangles)));
+  gnomon::TraceOptions how;
+  for (const auto flavour : {TraceFlavour::kThread, TraceFlavour::kPacket, TraceFlavour::kCompact}) {
+    how.flavour = flavour;
+    CAPTURE(to_string(flavour));
+    REQUIRE_THROWS_WITH(gnomon::Tracer(context(), tree, how),
+                        Catch::Contains(to_string(flavour)) && Catch::Contains("frame"));
+    REQUIRE_THROWS_WITH(gnomon::Tracer(context(), wide, how),
+                        Catch::Contains("frame") || Catch::Contains("thread"));
+  }
+  how = {};
+  how.step_limit = 100;
+  REQUIRE_THROWS_WITH(gnomon::Tracer(context(), tree, how), Catch::Contains("step_limit"));
+  REQUIRE_THROWS_WITH(gnomon::refit_device(context(), tree, triangles), Catch::Contains("refitting"));
+  REQUIRE_THROWS_WITH(gnomon::refit_device(context(), wide, triangles), Catch::Contains("refitting"));
+  REQUIRE_THROWS_WITH(gnomon::compact_device(context(), wide), Catch::Contains("compact"));
+}

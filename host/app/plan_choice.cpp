@@ -108,7 +108,7 @@ bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour) {
 }
 
 bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour) {
-  return has_slots(device, flavour) && (flavour == TraceFlavour::kAuto || flavour == TraceFlavour::kWide);
+  return has_slots(device, flavour) && flavour != TraceFlavour::kCompact;
 }
 
 void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree) {

@@ -68,7 +68,7 @@ struct PlanTask {
 // Whether a tracer of this flavour has slots, and so an order that can be learnt: the binary tree has none.
 [[nodiscard]] bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour);
 
-// Whether a tracer of this flavour takes trees whose boxes stand along the rays: the wide one alone.
+// Whether a tracer of this flavour takes trees whose boxes stand along the rays: wide or packet.
 [[nodiscard]] bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour);
 
 // Makes `build` be of this tree: what took how long stays the plain tree's.

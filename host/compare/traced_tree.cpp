@@ -17,9 +17,7 @@ TracedTree::TracedTree(const cl::Context& context, DeviceBvh tree, const Options
   TraceOptions how;
   how.accuracy = options.accuracy;
   how.portable = options.portable;
-  how.flavour = !wide_flavour_ ? TraceFlavour::kThread
-                : wide_.frame  ? TraceFlavour::kWide
-                               : TraceFlavour::kPacket;
+  how.flavour = wide_flavour_ ? TraceFlavour::kPacket : TraceFlavour::kThread;
   tracer_ = make_tracer(how);
 }
 

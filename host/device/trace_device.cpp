@@ -12,15 +12,15 @@ namespace gnomon {
 namespace {
 
 TraceFlavour flavour_for(const cl::DeviceInfo& device, const TraceOptions& options, bool framed) {
-  if (framed && options.flavour != TraceFlavour::kAuto && options.flavour != TraceFlavour::kWide) {
+  if (framed && (options.flavour == TraceFlavour::kThread || options.flavour == TraceFlavour::kCompact)) {
     throw Error(ErrorCode::kInvalidArgument, std::string("the ") + to_string(options.flavour) +
                                                  " flavour takes no trees whose boxes stand in a frame of "
-                                                 "their own (a plan's light-space tree); use wide");
+                                                 "their own (a plan's light-space tree); use wide or "
+                                                 "packet");
   }
-  if (framed) return TraceFlavour::kWide;
   if (options.flavour != TraceFlavour::kAuto) return options.flavour;
-  return device.is_cpu && device.loop_limit == 0 && options.step_limit == 0 ? TraceFlavour::kPacket
-                                                                            : TraceFlavour::kThread;
+  if (device.is_cpu && device.loop_limit == 0 && options.step_limit == 0) return TraceFlavour::kPacket;
+  return framed ? TraceFlavour::kWide : TraceFlavour::kThread;
 }
 
 GnBounds box_of(const GnNode& root) {
@@ -104,9 +104,7 @@ Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOpt
 
 Tracer::Tracer(const cl::Context& context, const DeviceWideBvh& tree, const TraceOptions& options)
     : context_(context),
-      flavour_(tree.frame || options.flavour != TraceFlavour::kAuto
-                   ? flavour_for(context.device(), options, tree.frame.has_value())
-                   : TraceFlavour::kPacket) {
+      flavour_(options.flavour == TraceFlavour::kAuto ? TraceFlavour::kPacket : options.flavour) {
   if (options.flavour == TraceFlavour::kThread) {
     throw Error(
         ErrorCode::kInvalidArgument,

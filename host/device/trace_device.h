@@ -24,7 +24,7 @@ using Hit = GnHit;
 enum class TraceFlavour : std::uint32_t {
   kAuto,     // packet on CPUs that let loops run, thread elsewhere
   kThread,   // the binary tree, one box at a time: one ray per work-item is the parallelism
-  kWide,     // the wide tree, eight boxes at a time: explicit vectors are; trees whose boxes stand in a frame
+  kWide,     // the wide tree, eight boxes at a time: explicit vectors are
   kPacket,   // the same; where 64 or 16 consecutive rays run together (through a point, or parallel), as one
   kCompact,  // two fifths of the wide tree's memory, one ray per work-item: for devices where memory traffic
              // decides
@@ -78,8 +78,8 @@ class RaySort;
 class Tracer {
  public:
   // Wide, packet and compact collapse the tree first and keep the result; leaves too large for it leave kAuto
-  // with the thread flavour. Where boxes stand in a frame (gnomon/tree/box_frame.h) kAuto is wide, and no
-  // other flavour will do. Throws Error: kDevice, kOutOfMemory, kInvalidArgument.
+  // with the thread flavour. Where boxes stand in a frame (gnomon/tree/box_frame.h) only wide and packet
+  // will do. Throws Error: kDevice, kOutOfMemory, kInvalidArgument.
   Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options = {});
   // Traces a wide tree, or for the compact flavour what it makes of it; the flavour asked for must not be
   // thread. Throws the same.

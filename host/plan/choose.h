@@ -64,7 +64,7 @@ struct PlanOptions {
   PlanPrices prices;
   std::uint64_t seed = 1;  // of the order in which probes run
   // Trees whose boxes stand along the rays may be kept (gnomon/tree/box_frame.h): only for callers whose
-  // tracer is the wide one or trace_reference, and who keep trees in no file.
+  // tracer is wide, packet or trace_reference, and who keep trees in no file.
   bool light_space = false;
   // Such a tree is made where rays are at least so oblique to the world's axes (light_space.h), and where
   // they see no more than so much of the baseline's boxes, put in the frame, beside these boxes as they are.

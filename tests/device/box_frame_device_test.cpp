@@ -6,6 +6,7 @@
 #include "gnomon/base/error.h"
 #include "gnomon/device/optimise_device.h"
 #include "gnomon/device/refit_device.h"
+#include "support/bundles.h"
 #include "support/flavours.h"
 #include "support/framed.h"
 
@@ -21,7 +22,7 @@ namespace {
 
 Traced trace(const gnomon::DeviceBvh& tree, const Rays& rays, const gnomon::TraceOptions& options) {
   const gnomon::Tracer tracer(context(), tree, options);
-  REQUIRE(tracer.flavour() == TraceFlavour::kWide);
+  REQUIRE(tracer.flavour() == options.flavour);
   return {tracer.closest(rays), tracer.any(rays)};
 }
 
@@ -34,7 +35,10 @@ std::size_t require_other_trees_answers(const Triangles& triangles, const gnomon
   const Traced expected = gnomon::test::trace(plain, rays, TraceFlavour::kThread);
   for (const bool portable : {false, true}) {
     gnomon::TraceOptions how;
+    how.flavour = TraceFlavour::kPacket;
     how.portable = portable;
+    if (gnomon::test::takes_packets()) gnomon::test::require_same_answers(expected, trace(framed, rays, how));
+    how.flavour = TraceFlavour::kWide;
     gnomon::test::require_same_answers(expected, trace(framed, rays, how));
     how.sort_rays = true;
     gnomon::test::require_same_answers(expected, trace(framed, rays, how));
@@ -58,7 +62,9 @@ TEST_CASE("framed trees give other trees' bits on a small soup", "[portable][mem
   const auto plain = gnomon::build_device(context(), triangles);
   const auto framed = gnomon::upload_bvh(context(), tree, triangles);
   const Traced expected = gnomon::test::trace(plain, rays, TraceFlavour::kThread);
-  gnomon::test::require_same_answers(expected, trace(framed, rays, {}));
+  gnomon::TraceOptions how;
+  how.flavour = TraceFlavour::kWide;
+  gnomon::test::require_same_answers(expected, trace(framed, rays, how));
 }
 
 TEST_CASE("framed trees give other trees' bits and the reference's visits, from near and far",
@@ -105,6 +111,53 @@ TEST_CASE("framed trees give other trees' bits on every shape, huge and tiny, an
   }
 }
 
+TEST_CASE("packets of a sun's rays give other trees' bits in framed trees", "[unlimited][packets]") {
+  for (const float offset : {0.0F, 1e3F}) {
+    auto triangles = gnomon::test::scaled(gnomon::test::soup(1500, 445, 0.4F), 1.0F, offset);
+    const auto floor = gnomon::test::scaled(gnomon::test::grid(10), 1.0F, offset);
+    triangles.insert(triangles.end(), floor.begin(), floor.end());
+    for (auto [name, rays] : gnomon::test::bundles(3)) {
+      for (GnRay& ray : rays) {
+        for (float& x : ray.origin) x += offset;
+      }
+      const gnomon::test::Direction along{double{rays[0].direction[0]}, double{rays[0].direction[1]},
+                                          double{rays[0].direction[2]}};
+      for (const auto& direction : {along, gnomon::test::Direction{1, 1, 1}}) {
+        CAPTURE(name, offset, direction[0], direction[1], direction[2]);
+        const std::size_t met = require_other_trees_answers(triangles, direction, rays, {});
+        if (name != "camera") REQUIRE(met > 20);
+      }
+    }
+  }
+}
+
+TEST_CASE("a sun's rays are traced as packets in a frame along them", "[unlimited][packets]") {
+  if (!gnomon::test::takes_packets()) return;
+  const auto triangles = gnomon::test::soup(1500, 446, 0.4F);
+  const Rays rays = gnomon::test::sun_rays(4, {0.4F, -0.8F, 0.45F}, 6.0F);
+  const auto tree = gnomon::upload_bvh(context(), framed_tree(triangles, {0.4, -0.8, 0.45}, {}), triangles);
+  const auto first_boxes = [&](TraceFlavour flavour) {
+    gnomon::TraceOptions how;
+    how.flavour = flavour;
+    how.counters = true;
+    std::vector<std::uint32_t> boxes;
+    for (const GnRayCounters& counters : gnomon::Tracer(context(), tree, how).closest(rays).counters)
+      boxes.push_back(counters.boxes);
+    return boxes;
+  };
+  // What is tested for all of a packet counts as its first ray's; the other fifteen of its group have equal
+  // counts.
+  const auto packet = first_boxes(TraceFlavour::kPacket);
+  std::size_t groups = 0;
+  for (std::size_t i = 0; i + 16 <= packet.size(); i += 16) {
+    bool equal = true;
+    for (std::size_t k = 2; k < 16; ++k) equal &= packet[i + k] == packet[i + 1];
+    groups += equal ? 1 : 0;
+  }
+  REQUIRE(groups == packet.size() / 16);
+  REQUIRE(first_boxes(TraceFlavour::kWide) != packet);
+}
+
 TEST_CASE("frames go with a tree through the device, and are refused where they would be lost",
           "[unlimited]") {
   const auto triangles = gnomon::test::soup(200, 450);
@@ -118,7 +171,7 @@ TEST_CASE("frames go with a tree through the device, and are refused where they 
   REQUIRE(tree_hash(download_wide(context(), wide)) ==
           tree_hash(gnomon::collapse_reference(host, triangles)));
   gnomon::TraceOptions how;
-  for (const auto flavour : {TraceFlavour::kThread, TraceFlavour::kPacket, TraceFlavour::kCompact}) {
+  for (const auto flavour : {TraceFlavour::kThread, TraceFlavour::kCompact}) {
     how.flavour = flavour;
     CAPTURE(to_string(flavour));
     REQUIRE_THROWS_WITH(gnomon::Tracer(context(), tree, how),
@@ -127,6 +180,9 @@ TEST_CASE("frames go with a tree through the device, and are refused where they 
                         Catch::Contains("frame") || Catch::Contains("thread"));
   }
   how = {};
+  const bool packets = context().device().is_cpu && context().device().loop_limit == 0;
+  REQUIRE(gnomon::Tracer(context(), tree, how).flavour() ==
+          (packets ? TraceFlavour::kPacket : TraceFlavour::kWide));
   how.step_limit = 100;
   REQUIRE_THROWS_WITH(gnomon::Tracer(context(), tree, how), Catch::Contains("step_limit"));
   REQUIRE_THROWS_WITH(gnomon::refit_device(context(), tree, triangles), Catch::Contains("refitting"));

@@ -131,6 +131,36 @@ TEST_CASE("packets of a sun's rays give other trees' bits in framed trees", "[un
   }
 }
 
+TEST_CASE("packets of a sun's rays at corners, where leaves' boxes end, lose none in framed trees",
+          "[unlimited][packets]") {
+  const std::array<float, 3> way{0.4F, -0.8F, 0.45F};
+  gnomon::test::Random random(447);
+  for (const float offset : {0.0F, 1e3F}) {
+    const auto triangles = gnomon::test::soup(3000, 448, 0.3F, offset);
+    Rays rays;
+    while (rays.size() < 64 * 60) {
+      // Those of a neighbourhood: a bundle must be narrow beside its scene.
+      const GnTriangle& middle = triangles[random.below(3000)];
+      std::vector<const float*> corners;
+      for (const GnTriangle& t : triangles) {
+        float apart = 0.0F;
+        for (int k = 0; k < 3; ++k) apart = std::max(apart, std::fabs(t.v0[k] - middle.v0[k]));
+        if (apart < 0.8F) corners.insert(corners.end(), {t.v0, t.v1, t.v2});
+      }
+      for (int i = 0; i < 64; ++i) {
+        const float* corner = corners[random.below(static_cast<std::uint32_t>(corners.size()))];
+        const float back = random.between(0.0F, 12.0F);
+        std::array<float, 3> origin{};
+        for (std::size_t k = 0; k < 3; ++k) origin[k] = corner[k] - back * way[k];
+        rays.push_back(gnomon::test::ray(origin, way));
+      }
+    }
+    CAPTURE(offset);
+    REQUIRE(require_other_trees_answers(triangles, {0.4, -0.8, 0.45}, rays, gnomon::test::leaves_of(1)) >
+            1000);
+  }
+}
+
 TEST_CASE("a sun's rays are traced as packets in a frame along them", "[unlimited][packets]") {
   if (!gnomon::test::takes_packets()) return;
   const auto triangles = gnomon::test::soup(1500, 446, 0.4F);

@@ -81,6 +81,13 @@ PlanOutcome no_plan(const PlanRequest& request, const std::string& reason) {
 
 PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Progress& progress) {
   if (!request.instead.empty()) return no_plan(request, request.instead + " says which tree");
+  if (request.name.starts_with("light") && !task.light_space) {
+    throw Error(
+        ErrorCode::kInvalidArgument,
+        "--plan " + request.name +
+            " is for trace and render through wide or packet, on a CPU: nothing else takes trees whose "
+            "boxes stand along the rays, and no file holds one");
+  }
   PlanOutcome out;
   out.asked = request.name;
   const bool by_name = request.name != "auto";

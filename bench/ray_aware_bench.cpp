@@ -19,6 +19,7 @@
 #include "gnomon/plan/choose.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon/scene/import.h"
+#include "gnomon/scene/scene.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon_commit.h"
 #include "ray_aware/set_ups.h"
@@ -52,7 +53,7 @@ class Builder {
     PlanBuilder out = reference_builder();
     out.build = [this](std::span<const Triangle> triangles, const BuildOptions& options) {
       const float* w = options.measure.weights;
-      const auto [at, fresh] = built_.try_emplace({w[0], w[1], w[2]});
+      const auto [at, fresh] = built_.try_emplace({triangles_hash(triangles), {w[0], w[1], w[2]}});
       if (fresh) at->second = build_reference(triangles, options);
       return at->second;
     };
@@ -65,7 +66,7 @@ class Builder {
   }
 
  private:
-  std::map<std::array<float, 3>, Bvh> built_;
+  std::map<std::pair<std::uint64_t, std::array<float, 3>>, Bvh> built_;
   std::map<std::pair<std::string, std::array<float, 3>>, Bvh> moved_;
 };
 
@@ -100,11 +101,16 @@ class Bench {
     row(start, "sah", baseline, rays, expected, json::object());
     for (const std::string& name : candidate_names()) {
       if (name == "sah" || (name == "sah-order" && rays.query != Query::kAny)) continue;
+      if (name.starts_with("light") && decision.obliquity < settings_.plan.least_oblique) continue;
       PlanOptions options = settings_.plan;
       options.choice = name;
       const Plan other = make_plan(set_up_.triangles, asked, options, builder_.get());
       const PlanTree& tree = other.trees[other.decisions.front().tree];
       json more = {{"build_units", tree.build_units}};
+      if (name.starts_with("light")) {
+        more["obliquity"] = other.decisions.front().obliquity;
+        more["framed_share"] = other.decisions.front().framed_share;
+      }
       for (const Trial& trial : decision.trials) {
         if (trial.name == name) more.update(figures_of(trial));
       }
@@ -195,6 +201,7 @@ int main(int argc, char** argv) {
   CLI::App* const generated = app.add_subcommand("generated", "generated scenes");
   generated->add_option("--scenes", settings.scenes)->delimiter(',');
   generated->add_option("--triangles", settings.triangles);
+  settings.plan.light_space = true;  // trees are traced by the reference
   app.add_option("--query", settings.query, "closest, any or every alone");
   app.add_option("--rays", settings.rays, "to measure on");
   app.add_option("--expected", settings.expected, "rays that trees must repay themselves over");

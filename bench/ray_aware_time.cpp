@@ -111,6 +111,7 @@ class Bench {
   void run_case(const AwareSetUp& set_up, const RayCase& rays, const Bvh& plain, const PlanBuilder& builder) {
     PlanOptions options;
     options.keep_tried = true;
+    options.light_space = true;
     const std::vector<PlanRays> asked{
         {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, settings_.expected}};
     const Plan plan = make_plan(set_up.triangles, asked, options, builder);

@@ -30,6 +30,7 @@
 #include "gnomon/scene/ray_record.h"
 #include "gnomon/scene/ray_set.h"
 #include "gnomon/scene/scene.h"
+#include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/build_options.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/bvh.h"

@@ -146,7 +146,7 @@ static inline void test_triangle(GnPacket* p, __global const float8* rays, __glo
   if (met == 0u) return;
   {
     const uint inside = lanes_above16(smallest, bound) | lanes_above16(-bound, largest);
-    const float16 start = p->start[g], inverse = p->inverse[p->kz][g];
+    const float16 start = p->start[g], inverse = GN_MAIN_INVERSE(p, g);
     const float16 lean = x * e->nx[i] + y * e->ny[i];
     const float16 from = p->parallel ? e->from[i] - lean : (float16)e->from[i];
     const float16 through = p->parallel ? (float16)e->through[i] : e->through[i] + lean;

@@ -14,8 +14,13 @@
 // slide_x and slide_y are that difference; packet_edges in packet_leaf.h builds on it.
 typedef struct GnPacket {
   // Per ray, a vector for each group of sixteen.
-  float16 origin[3][GN_GROUPS];
+  float16 origin[3][GN_GROUPS];  // as boxes stand; directions' inverses too
   float16 inverse[3][GN_GROUPS];
+#if GN_FRAME
+  float16 main_inverse[GN_GROUPS];  // along the main axis, as triangles stand
+  GnBoxFrame frame;
+  float margin;  // that widens boxes
+#endif
   float16 tmin[GN_GROUPS];
   float16 tmax[GN_GROUPS];
   float16 limit[GN_GROUPS];  // of box entries still of interest
@@ -54,6 +59,14 @@ typedef struct GnPacket {
   uint triangles[GN_GROUPS];
 #endif
 } GnPacket;
+
+#if GN_FRAME
+#define GN_MAIN_INVERSE(p, g) (p)->main_inverse[g]
+#define GN_SCENE_SIZE(nodes) (2.0f * size_of_root(nodes))  // frames halve the scene
+#else
+#define GN_MAIN_INVERSE(p, g) (p)->inverse[(p)->kz][g]
+#define GN_SCENE_SIZE(nodes) size_of_root(nodes)
+#endif
 
 // Error bounds of packet_leaf.h count on these.
 #define GN_SHEAR_LIMIT 1.25f
@@ -231,6 +244,37 @@ static inline int find_pencil(GnPacket* p, const float16 directions[3][GN_GROUPS
   return p->extra <= 16.0f * far_all;
 }
 
+#if GN_FRAME
+// Turns the rays for box tests, as gn_box_ray does one: the margin is the largest of theirs, and doubled, since it is added
+// to planes as well, which rounds. False where a component is denormal or differs in sign; parallel rays stay parallel.
+static inline int turn_packet(GnPacket* p, const float16 directions[3][GN_GROUPS]) {
+  const float* r = p->frame.rows;
+  float16 far = (float16)0.0f;
+  uint g, k;
+  int fit = 1;
+  for (g = 0u; g < p->groups; ++g) {
+    const float16 x = p->origin[0][g], y = p->origin[1][g], z = p->origin[2][g];
+    far = GN_MAX8(fabs(x) + fabs(y) + fabs(z), far);
+    p->main_inverse[g] = p->inverse[p->kz][g];
+    for (k = 0u; k < 3u; ++k) {
+      const float16 way =
+          r[3u * k] * directions[0][g] + r[3u * k + 1u] * directions[1][g] + r[3u * k + 2u] * directions[2][g];
+      p->origin[k][g] = r[3u * k] * x + r[3u * k + 1u] * y + r[3u * k + 2u] * z;
+      p->inverse[k][g] = 1.0f / way;
+      fit &= all((way == 0.0f) | (fabs(way) >= FLT_MIN));
+    }
+  }
+  p->margin = 2.0f * (GN_FRAME_MARGIN * (p->frame.size + largest_of16(far)) + GN_FRAME_UNDERFLOW);
+  if (!fit || !bound_rays(p)) return 0;
+  for (k = 0u; k < 3u; ++k) {
+    const float ahead = p->near_side[k] & 32u ? -p->margin : p->margin;
+    p->near_origin[k] += ahead;
+    p->far_origin[k] -= ahead;
+  }
+  return 1;
+}
+#endif
+
 // The largest distance at which a box still matters to any ray.
 static inline void find_limit_of_all(GnPacket* p) {
   float16 most = (float16)(0.0f);
@@ -274,6 +318,9 @@ static inline int start_packet(GnPacket* p, __global const float8* rays, uint fi
   p->groups = groups;
   if (!may_be_packet(rays, first, groups)) return 0;
   if (!take_rays(p, rays, directions) || !bound_rays(p) || !find_pencil(p, directions, scene_size)) return 0;
+#if GN_FRAME
+  if (!turn_packet(p, directions)) return 0;
+#endif
   for (g = 0u; g < groups; ++g) {
     const float16 limit = p->tmax[g] * (1.0f + GN_SLAB_SLACK);
     p->limit[g] = GN_MIN8(limit, (float16)FLT_MAX);

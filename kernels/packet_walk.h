@@ -42,6 +42,10 @@ static inline GnSlotBox box_of_slot(const GnPacket* p, __global const GnWideNode
   for (k = 0u; k < 3u; ++k) {
     box.near[k] = ((__global const float*)((__global const char*)node + p->near_side[k]))[slot];
     box.far[k] = ((__global const float*)((__global const char*)node + (p->near_side[k] ^ 32u)))[slot];
+#if GN_FRAME
+    box.near[k] -= p->near_side[k] & 32u ? -p->margin : p->margin;
+    box.far[k] += p->near_side[k] & 32u ? -p->margin : p->margin;
+#endif
   }
   return box;
 }

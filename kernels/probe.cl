@@ -5,6 +5,7 @@
 #include "shared/area_math.h"
 #include "shared/wide_layout.h"
 #include "shared/compact_layout.h"
+#include "shared/box_frame.h"
 
 // From a real address: a null pointer need not have the bits of zero.
 #define GN_OFFSET(type, member) \
@@ -50,6 +51,8 @@ __kernel void probe_layout(__global uint* out) {
   out[36] = sizeof(GnVertex);
   out[37] = sizeof(GnPlainTriangle);
   out[38] = GN_OFFSET(GnCompactNode, planes);
+  out[39] = sizeof(GnBoxFrame);
+  out[40] = GN_OFFSET(GnBoxFrame, size);
 }
 
 // x[i] y[i] z[i] -> products and sums that would differ were they fused, the division-free reciprocal, and bins.

@@ -30,6 +30,12 @@ static inline void write_packet(GnPacket* p, GnFound* found, __global const GnTr
   }
 }
 
+#if GN_FRAME
+#define GN_FRAME_OF_PACKET(packet) packet.frame = *boxes;
+#else
+#define GN_FRAME_OF_PACKET(packet)
+#endif
+
 static inline void reset_counters(GnPacket* p) {
 #if GN_COUNTERS
   uint g;
@@ -73,13 +79,14 @@ static inline uint next_packet(GnPacket* p, __global const float8* rays, uint in
 // Closest hit of rays [0, count). invalid_rays counts rays that are not traceable; they miss.
 __kernel void trace_closest(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
                             __global const float8* rays, __global float4* hits, volatile __global uint* invalid_rays,
-                            __global GnRayCounters* counters, uint count) {
+                            __global GnRayCounters* counters, uint count GN_FRAME_PARAMETER) {
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
   const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
-  const float size = size_of_root(nodes);
-  const GnWideBatch batch = {nodes, blocks, rays, hits, 0, invalid_rays, counters};
+  const float size = GN_SCENE_SIZE(nodes);
+  const GnWideBatch batch = {nodes, blocks, rays, hits, 0, invalid_rays, counters GN_FRAME_OF_BATCH};
   GnPacket packet;
   GnFound found;
+  GN_FRAME_OF_PACKET(packet)
   found.count = 0u;
   while (index < end) {
     uint start;
@@ -97,12 +104,13 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const GnT
 // Any hit of rays [0, count): occluded receives 1 or 0.
 __kernel void trace_any(__global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
                         __global const float8* rays, __global uint* occluded, volatile __global uint* invalid_rays,
-                        __global GnRayCounters* counters, uint count) {
+                        __global GnRayCounters* counters, uint count GN_FRAME_PARAMETER) {
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
   const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
-  const float size = size_of_root(nodes);
-  const GnWideBatch batch = {nodes, blocks, rays, 0, occluded, invalid_rays, counters};
+  const float size = GN_SCENE_SIZE(nodes);
+  const GnWideBatch batch = {nodes, blocks, rays, 0, occluded, invalid_rays, counters GN_FRAME_OF_BATCH};
   GnPacket packet;
+  GN_FRAME_OF_PACKET(packet)
   while (index < end) {
     uint start, i;
     const uint groups = next_packet(&packet, rays, index, end, size, &start);

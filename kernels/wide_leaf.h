@@ -2,10 +2,11 @@
 // is an interval; only where intervals overlap, or floats cannot tell inside from outside, is a triangle worked out
 // exactly.
 // Options: GN_COUNTERS, GN_PORTABLE (eight.h), GN_FAST (1: floats decide and measure, without error bounds; hits may be
-// lost). Feeds wide_walk.h and packet_leaf.h.
+// lost), GN_FRAME (1: boxes stand in a frame, shared/box_frame.h). Feeds wide_walk.h and packet_leaf.h.
 #ifndef GNOMON_WIDE_LEAF_H
 #define GNOMON_WIDE_LEAF_H
 
+#include "shared/box_frame.h"
 #include "shared/hit_math.h"
 #include "shared/wide_layout.h"
 #include "eight.h"
@@ -20,10 +21,16 @@
 #ifndef GN_COUNTERS
 #define GN_COUNTERS 0
 #endif
+#ifndef GN_FRAME
+#define GN_FRAME 0
+#endif
 
 typedef struct GnWideRay {
-  GnRayFrame frame;
+  GnRayFrame frame;  // what triangles are tested with; all else is for boxes
   float8 origin[3];
+#if GN_FRAME
+  float8 far_origin[3];
+#endif
   float8 inverse[3];
   float8 far_inverse[3];  // a little larger: far sides are never taken for nearer than they are
   uint near_side[3];      // byte offset of the planes met first, per axis
@@ -47,15 +54,29 @@ typedef struct GnWideWalk {
   uint triangles;
 } GnWideWalk;
 
+#if GN_FRAME
+#define GN_FAR_ORIGIN(ray, k) (ray)->far_origin[k]
+static inline GnWideRay wide_ray(const GnRay* ray, const GnBoxFrame* boxes) {
+  const GnBoxRay turned = gn_box_ray(boxes, ray);
+#else
+#define GN_FAR_ORIGIN(ray, k) (ray)->origin[k]
 static inline GnWideRay wide_ray(const GnRay* ray) {
+#endif
   GnWideRay out;
   uint k;
   out.frame = gn_ray_frame(ray);
   for (k = 0u; k < 3u; ++k) {
-    const uint backwards = out.frame.inverse[k] < 0.0f;
+#if GN_FRAME
+    const float inverse = turned.inverse[k];
+    out.origin[k] = (float8)(turned.near_origin[k]);
+    out.far_origin[k] = (float8)(turned.far_origin[k]);
+#else
+    const float inverse = out.frame.inverse[k];
     out.origin[k] = (float8)(ray->origin[k]);
-    out.inverse[k] = (float8)(out.frame.inverse[k]);
-    out.far_inverse[k] = (float8)(gn_slab_limit(gn_abs(out.frame.inverse[k])) * (backwards ? -1.0f : 1.0f));
+#endif
+    const uint backwards = inverse < 0.0f;
+    out.inverse[k] = (float8)(inverse);
+    out.far_inverse[k] = (float8)(gn_slab_limit(gn_abs(inverse)) * (backwards ? -1.0f : 1.0f));
     out.near_side[k] = 64u * k + 32u * backwards;
   }
   // The larger reciprocal makes a negative distance too small; those that matter are no less than tmin.

@@ -4,7 +4,8 @@
 // for branches it guessed wrong. So several rays take steps by turns: while one's node is on its way from memory, others
 // compute, and steps of different rays, which do not depend on each other, run side by side.
 // Options: GN_WIDE_STACK (at least 7 * depth of the wide tree + 8), GN_COUNTERS, GN_PORTABLE (eight.h), GN_RAYS_AT_ONCE
-// (1: one after the other, each in a loop of its own, for devices that end long loops). Feeds trace_wide.cl, trace_packet.cl.
+// (1: one after the other, each in a loop of its own, for devices that end long loops), GN_FRAME (wide_leaf.h).
+// Feeds trace_wide.cl, trace_packet.cl.
 #ifndef GNOMON_WIDE_WALK_H
 #define GNOMON_WIDE_WALK_H
 
@@ -26,9 +27,9 @@ static inline uint boxes_met(const GnWideRay* ray, __global const GnWideNode* no
   const float8 near_x = (GN_PLANES(node, x) - ray->origin[0]) * ray->inverse[0];
   const float8 near_y = (GN_PLANES(node, y) - ray->origin[1]) * ray->inverse[1];
   const float8 near_z = (GN_PLANES(node, z) - ray->origin[2]) * ray->inverse[2];
-  const float8 far_x = fma(GN_PLANES(node, x ^ 32u) - ray->origin[0], ray->far_inverse[0], ray->far_margin);
-  const float8 far_y = fma(GN_PLANES(node, y ^ 32u) - ray->origin[1], ray->far_inverse[1], ray->far_margin);
-  const float8 far_z = fma(GN_PLANES(node, z ^ 32u) - ray->origin[2], ray->far_inverse[2], ray->far_margin);
+  const float8 far_x = fma(GN_PLANES(node, x ^ 32u) - GN_FAR_ORIGIN(ray, 0), ray->far_inverse[0], ray->far_margin);
+  const float8 far_y = fma(GN_PLANES(node, y ^ 32u) - GN_FAR_ORIGIN(ray, 1), ray->far_inverse[1], ray->far_margin);
+  const float8 far_z = fma(GN_PLANES(node, z ^ 32u) - GN_FAR_ORIGIN(ray, 2), ray->far_inverse[2], ray->far_margin);
   float8 near = GN_MAX8(near_x, (float8)ray->tmin);
   float8 far = GN_MIN8(far_x, (float8)limit);
   near = GN_MAX8(near_y, near);
@@ -88,7 +89,21 @@ typedef struct GnWideBatch {
   __global uint* occluded;
   volatile __global uint* invalid_rays;
   __global GnRayCounters* counters;
+#if GN_FRAME
+  GnBoxFrame boxes;
+#endif
 } GnWideBatch;
+
+// What kernels take beyond the others' parameters for boxes in a frame, and put at a batch's end.
+#if GN_FRAME
+#define GN_FRAME_PARAMETER , __global const GnBoxFrame* boxes
+#define GN_FRAME_OF_BATCH , *boxes
+#define GN_TAKE_RAY(ray, batch) wide_ray(ray, &(batch)->boxes)
+#else
+#define GN_FRAME_PARAMETER
+#define GN_FRAME_OF_BATCH
+#define GN_TAKE_RAY(ray, batch) wide_ray(ray)
+#endif
 
 static inline void send_for(const GnWideBatch* batch, uint link) {
   const int is_leaf = (link & GN_LEAF_LINK) != 0u;
@@ -152,7 +167,7 @@ static inline uint take_up(GnWalker* walker, const GnWideBatch* batch, uint inde
   walker->current = 0u;
   walker->height = 0u;
   if (gn_ray_is_valid(&ray)) {
-    walker->ray = wide_ray(&ray);
+    walker->ray = GN_TAKE_RAY(&ray, batch);
     return 1u;
   }
   atomic_inc(batch->invalid_rays);

@@ -81,6 +81,13 @@ PlanOutcome no_plan(const PlanRequest& request, const std::string& reason) {
 
 PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Progress& progress) {
   if (!request.instead.empty()) return no_plan(request, request.instead + " says which tree");
+  if (request.name.starts_with("light") && !task.light_space) {
+    throw Error(
+        ErrorCode::kInvalidArgument,
+        "--plan " + request.name +
+            " is for trace and render through wide or packet, on a CPU: nothing else takes trees whose "
+            "boxes stand along the rays, and no file holds one");
+  }
   PlanOutcome out;
   out.asked = request.name;
   const bool by_name = request.name != "auto";
@@ -94,6 +101,7 @@ PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Pro
   const auto start = std::chrono::steady_clock::now();
   PlanOptions how;
   how.choice = request.name;
+  how.light_space = task.light_space;
   const std::vector<PlanRays> rays = task.draw();
   out.plan = make_plan(task.scene.triangles, rays, how, device_builder(task.context), progress);
   out.chosen = choose_trees(*out.plan, rays, task.scene.triangles, task.plain.host, task.wanted, !by_name);
@@ -104,6 +112,10 @@ PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Pro
 bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour) {
   if (flavour != TraceFlavour::kAuto) return flavour != TraceFlavour::kThread;
   return device.is_cpu && device.loop_limit == 0;
+}
+
+bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour) {
+  return has_slots(device, flavour) && flavour != TraceFlavour::kCompact;
 }
 
 void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree) {

@@ -55,6 +55,7 @@ struct PlanTask {
   // Rays to fit to and to judge by; asked for once it is clear that planning can pay.
   std::function<std::vector<PlanRays>()> draw;
   TreesWanted wanted = TreesWanted::kOneEach;
+  bool light_space = false;  // the tracer takes trees whose boxes stand along the rays
 };
 
 // Plans where that can pay, or must since a tree was asked for by name. With auto what is kept costs probes
@@ -66,6 +67,9 @@ struct PlanTask {
 
 // Whether a tracer of this flavour has slots, and so an order that can be learnt: the binary tree has none.
 [[nodiscard]] bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour);
+
+// Whether a tracer of this flavour takes trees whose boxes stand along the rays: wide or packet.
+[[nodiscard]] bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour);
 
 // Makes `build` be of this tree: what took how long stays the plain tree's.
 void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree);

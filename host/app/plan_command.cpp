@@ -6,6 +6,7 @@
 #include "device_choice.h"
 #include "document.h"
 #include "interrupt.h"
+#include "plan_choice.h"
 #include "plan_rays.h"
 #include "ray_batch.h"
 #include "scene_source.h"
@@ -49,8 +50,9 @@ int run(const Options& options, Console& console) {
   const Scene scene = load_scene(options.scene, console);
   const std::vector<PlanRays> rays = rays_of(options, scene, context, console.progress());
   stop_if_interrupted();
-  const Plan plan =
-      make_plan(scene.triangles, rays, options.plan, device_builder(context), console.progress());
+  PlanOptions how = options.plan;
+  how.light_space = takes_frames(context.device(), TraceFlavour::kAuto);
+  const Plan plan = make_plan(scene.triangles, rays, how, device_builder(context), console.progress());
   stop_if_interrupted();
   Json document = start_document("plan");
   add_device(document, &context.device());

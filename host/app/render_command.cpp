@@ -61,6 +61,7 @@ PlanOutcome plan_of(const Options& options, const cl::Context& context, const Ti
       options.plan.expected != 0 ? static_cast<double>(options.plan.expected) : kMostRaysOfPath * paths;
   const std::vector<Ray> seen = primary_rays(scene, 256, options.render.seed);
   PlanTask task{context, scene, build, {{Query::kClosest, seen, most}}, "at most", {}};
+  task.light_space = takes_frames(context.device(), TraceFlavour::kAuto);
   if (options.plan.name == "auto") {
     const Outlook outlook = outlook_of(build.host, scene.triangles, task.to_come);
     if (!outlook.pays) return plan_for(options.plan, task, progress);

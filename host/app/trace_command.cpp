@@ -174,7 +174,14 @@ PlanTask plan_task(const Options& options, const cl::Context& context, const Sce
   };
   const std::string counted =
       told ? "" : std::to_string(rays.size()) + " in each of " + std::to_string(passes(options)) + " passes";
-  return {context, scene, build, {{query, rays, expected}}, counted, draw};
+  return {context,
+          scene,
+          build,
+          {{query, rays, expected}},
+          counted,
+          draw,
+          TreesWanted::kOneEach,
+          takes_frames(context.device(), how_to_trace(options).flavour)};
 }
 
 int run(const Options& options, Console& console) {

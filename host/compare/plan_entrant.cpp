@@ -25,7 +25,9 @@ class PlanEntrant : public Entrant {
     const std::vector<PlanRays> rays = drawn();
     if (rays.empty())
       throw Error(ErrorCode::kInvalidArgument, "the scene has no rays of these kinds to plan for");
-    plan_ = make_plan(scene_.triangles, rays, {}, builder_, progress);
+    PlanOptions how;
+    how.light_space = traces_wide(context_.device());
+    plan_ = make_plan(scene_.triangles, rays, how, builder_, progress);
     for (const PlanTree& kept : plan_.trees)
       trees_.emplace_back(context_, upload_bvh(context_, kept.tree.bvh, scene_.triangles),
                           TracedTree::Options{}, kept.tree.ranks, nullptr, kept.tree.weights);

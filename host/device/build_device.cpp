@@ -121,6 +121,7 @@ DeviceBvh build_device(const cl::Context& context, cl_mem triangles, std::uint32
 
 Bvh download_bvh(const cl::Context& context, const DeviceBvh& tree) {
   Bvh bvh;
+  bvh.frame = tree.frame;
   if (tree.triangle_count == 0) return bvh;
   bvh.nodes = context.download_values<Node>(tree.nodes, tree.node_count);
   bvh.primitives = context.download_values<std::uint32_t>(tree.order, tree.triangle_count);
@@ -132,6 +133,7 @@ DeviceBvh upload_bvh(const cl::Context& context, const Bvh& bvh, std::span<const
   tree.triangle_count = static_cast<std::uint32_t>(bvh.primitives.size());
   tree.node_count = static_cast<std::uint32_t>(std::max<std::size_t>(1, bvh.nodes.size()));
   tree.max_depth = stats_of(bvh, {}).max_depth;
+  tree.frame = bvh.frame;
   std::vector<GnLeafTriangle> leaves;
   leaves.reserve(bvh.primitives.size());
   for (const std::uint32_t primitive : bvh.primitives) {

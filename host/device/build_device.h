@@ -26,6 +26,7 @@ struct DeviceBvh {
       0;  // entries of the leaf order: Builder::kBest may name a triangle in several leaves
   std::uint32_t node_count = 0;
   std::uint32_t max_depth = 0;
+  std::optional<BoxFrame> frame{};  // Bvh's
   [[nodiscard]] std::uint64_t bytes() const { return nodes.bytes + order.bytes + leaf_triangles.bytes; }
 };
 

@@ -128,6 +128,7 @@ class Collapser {
     const auto found = numbers();
     DeviceWideBvh wide;
     wide.triangle_count = tree_.triangle_count;
+    wide.frame = tree_.frame;
     wide.node_count = found[1];
     wide.block_count = found[2];
     std::uint32_t largest_leaf = found[3];
@@ -189,7 +190,7 @@ DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
 
 WideBvh download_wide(const cl::Context& context, const DeviceWideBvh& tree) {
   return {context.download_values<WideNode>(tree.nodes, tree.node_count),
-          context.download_values<TriangleBlock>(tree.blocks, tree.block_count), tree.depth};
+          context.download_values<TriangleBlock>(tree.blocks, tree.block_count), tree.depth, tree.frame};
 }
 
 }  // namespace gnomon

@@ -18,6 +18,7 @@ struct DeviceWideBvh {
   std::uint32_t node_count = 0;
   std::uint32_t block_count = 0;
   std::uint32_t depth = 0;
+  std::optional<BoxFrame> frame{};  // Bvh's
   [[nodiscard]] std::uint64_t bytes() const { return nodes.bytes + blocks.bytes; }
 };
 

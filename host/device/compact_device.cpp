@@ -7,6 +7,7 @@
 #include "gnomon/cl/launch.h"
 #include "gnomon/cl/program.h"
 #include "gnomon/device/radix_sort.h"
+#include "gnomon/tree/box_frame.h"
 
 namespace gnomon {
 namespace {
@@ -135,6 +136,7 @@ DeviceCompactBvh compact_device(const cl::Context& context, const DeviceWideBvh&
                                 const CompactOptions& options, BuildReport* out) {
   const auto start = std::chrono::steady_clock::now();
   options.check();
+  refuse_frame(tree.frame, "the compact layout");
   Compactor compactor(context, tree, options);
   DeviceCompactBvh compact = compactor.run();
   if (out != nullptr) {

@@ -172,6 +172,7 @@ class Optimiser {
     out.triangle_count = all.triangles;
     out.node_count = nodes_;
     out.max_depth = all.height;
+    out.frame = tree_.frame;
     out.nodes = context_.create_buffer("nodes", nodes_ * sizeof(Node));
     out.order = context_.create_buffer("order", all.triangles * sizeof(std::uint32_t));
     out.leaf_triangles = context_.create_buffer("leaf_triangles", all.triangles * sizeof(GnLeafTriangle));

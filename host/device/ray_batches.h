@@ -25,7 +25,8 @@ struct TracePlan {
   bool compact = false;
   bool shares_corners = false;  // of a compact tree
   bool portable = false;
-  bool fast = false;  // Accuracy::kFast
+  bool fast = false;    // Accuracy::kFast
+  bool framed = false;  // of a wide tree whose boxes stand in a frame
   [[nodiscard]] std::string program_options() const;
   [[nodiscard]] std::size_t batch_of(std::size_t rays) const;  // rays per launch
 };

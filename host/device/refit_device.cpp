@@ -6,6 +6,7 @@
 
 #include "gnomon/cl/launch.h"
 #include "gnomon/cl/program.h"
+#include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/refit.h"
 
@@ -108,6 +109,7 @@ class Refit {
 
 void refit_device(const cl::Context& context, DeviceBvh& tree, std::span<const Triangle> triangles) {
   require_count(triangles.size(), tree.triangle_count);
+  refuse_frame(tree.frame, "refitting");
   if (triangles.empty()) return;
   Refit refit(context, triangles);
   refit.check_triangles();
@@ -116,6 +118,7 @@ void refit_device(const cl::Context& context, DeviceBvh& tree, std::span<const T
 
 void refit_device(const cl::Context& context, DeviceWideBvh& tree, std::span<const Triangle> triangles) {
   require_count(triangles.size(), tree.triangle_count);
+  refuse_frame(tree.frame, "refitting");
   if (triangles.empty()) return;
   Refit refit(context, triangles);
   refit.check_triangles();

@@ -11,10 +11,16 @@ namespace gnomon {
 
 namespace {
 
-TraceFlavour flavour_for(const cl::DeviceInfo& device, const TraceOptions& options) {
+TraceFlavour flavour_for(const cl::DeviceInfo& device, const TraceOptions& options, bool framed) {
+  if (framed && (options.flavour == TraceFlavour::kThread || options.flavour == TraceFlavour::kCompact)) {
+    throw Error(ErrorCode::kInvalidArgument, std::string("the ") + to_string(options.flavour) +
+                                                 " flavour takes no trees whose boxes stand in a frame of "
+                                                 "their own (a plan's light-space tree); use wide or "
+                                                 "packet");
+  }
   if (options.flavour != TraceFlavour::kAuto) return options.flavour;
-  return device.is_cpu && device.loop_limit == 0 && options.step_limit == 0 ? TraceFlavour::kPacket
-                                                                            : TraceFlavour::kThread;
+  if (device.is_cpu && device.loop_limit == 0 && options.step_limit == 0) return TraceFlavour::kPacket;
+  return framed ? TraceFlavour::kWide : TraceFlavour::kThread;
 }
 
 GnBounds box_of(const GnNode& root) {
@@ -50,8 +56,13 @@ GnBounds box_of(const CompactNode& root) {
 // For rays to be sorted in; none when they are not.
 template <typename Node>
 std::unique_ptr<RaySort> sort_in(const cl::Context& context, const cl::Buffer& nodes,
-                                 const TraceOptions& options) {
+                                 const TraceOptions& options, const std::optional<BoxFrame>& frame = {}) {
   if (!options.sort_rays) return nullptr;
+  if (frame) {  // rays begin where triangles are, not where boxes stand
+    const float size = frame->size;
+    return std::make_unique<RaySort>(context,
+                                     GnBounds{{-size, -size, -size}, 0.0F, {size, size, size}, 0.0F});
+  }
   return std::make_unique<RaySort>(context, box_of(context.download_values<Node>(nodes, 1).front()));
 }
 
@@ -78,7 +89,7 @@ const char* to_string(Accuracy accuracy) {
 }
 
 Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options)
-    : context_(context), flavour_(flavour_for(context.device(), options)) {
+    : context_(context), flavour_(flavour_for(context.device(), options, tree.frame.has_value())) {
   if (flavour_ != TraceFlavour::kThread && !collapse(tree, options)) flavour_ = TraceFlavour::kThread;
   if (flavour_ == TraceFlavour::kThread) {
     trace_binary(tree, options);
@@ -123,7 +134,8 @@ bool Tracer::collapse(const DeviceBvh& tree, const TraceOptions& options) {
     collapsed_ = collapse_device(context_, tree);
     return true;
   } catch (const Error& error) {
-    if (options.flavour != TraceFlavour::kAuto || error.code() != ErrorCode::kInvalidArgument) throw;
+    if (options.flavour != TraceFlavour::kAuto || tree.frame) throw;
+    if (error.code() != ErrorCode::kInvalidArgument) throw;
     return false;
   }
 }
@@ -140,7 +152,12 @@ void Tracer::trace_binary(const DeviceBvh& tree, const TraceOptions& options) {
 
 void Tracer::trace_wide(const DeviceWideBvh& tree, const TraceOptions& options) {
   plan_ = std::make_unique<TracePlan>(plan_wide_trace(context_.device(), options, tree.depth));
-  sort_ = sort_in<GnWideNode>(context_, tree.nodes, options);
+  if (tree.frame) {
+    plan_->framed = true;
+    frame_ = context_.create_buffer("box_frame", sizeof(BoxFrame));
+    context_.upload_values<BoxFrame>(frame_, std::span(&*tree.frame, 1));
+  }
+  sort_ = sort_in<GnWideNode>(context_, tree.nodes, options, tree.frame);
   nodes_ = tree.nodes.mem.get();
   triangles_ = tree.blocks.mem.get();
   set_up(flavour_ == TraceFlavour::kPacket ? "trace_packet.cl" : "trace_wide.cl");
@@ -179,6 +196,7 @@ cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, const 
   cl::set_arguments(kernel.get(), nodes_, triangles_, launch.rays, launch.answers, invalid_, launch.counters,
                     launch.count);
   if (plan_->compact) cl::set_arguments_from(kernel.get(), 7, vertices_);
+  if (plan_->framed) cl::set_arguments_from(kernel.get(), 7, frame_);
   if (plan_->step_limit != 0) {
     cl::set_arguments_from(kernel.get(), 7, passes.states, passes.waiting, passes.entries, passes.paused,
                            pass);

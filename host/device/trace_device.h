@@ -78,7 +78,8 @@ class RaySort;
 class Tracer {
  public:
   // Wide, packet and compact collapse the tree first and keep the result; leaves too large for it leave kAuto
-  // with the thread flavour. Throws Error: kDevice, kOutOfMemory, kInvalidArgument.
+  // with the thread flavour. Where boxes stand in a frame (gnomon/tree/box_frame.h) only wide and packet
+  // will do. Throws Error: kDevice, kOutOfMemory, kInvalidArgument.
   Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options = {});
   // Traces a wide tree, or for the compact flavour what it makes of it; the flavour asked for must not be
   // thread. Throws the same.
@@ -135,6 +136,7 @@ class Tracer {
   cl::Handle<cl_kernel> any_;
   cl::Buffer invalid_;
   cl::Buffer no_counters_;
+  cl::Buffer frame_;  // that boxes stand in; none: empty
 };
 
 }  // namespace gnomon

@@ -7,6 +7,7 @@
 #include "gnomon/base/error.h"
 #include "gnomon/shared/hit_math.h"
 #include "gnomon/shared/measure_math.h"
+#include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/parents_first.h"
 
 namespace gnomon {
@@ -187,6 +188,7 @@ void OrderOptions::check() const {
 ChildOrder learn_order(const Bvh& bvh, std::span<const Triangle> triangles, std::span<const Ray> rays,
                        const OrderOptions& options) {
   options.check();
+  refuse_frame(bvh.frame, "learn_order");
   if (bvh.nodes.empty()) return {};
   return Learner(bvh, triangles, rays, options).run();
 }

@@ -54,6 +54,7 @@ class Chooser {
     decision_.query = rays.query;
     decision_.expected = rays.expected;
     decision_.kept = "sah";
+    decision_.obliquity = pool.obliquity();
   }
 
   Decision run() {
@@ -73,6 +74,11 @@ class Chooser {
       decision_.reason = "an order of children serves any hit alone";
       return;
     }
+    if (name.starts_with("light")) {
+      require(options_.light_space, "choice", name,
+              "here: this use of a plan takes no boxes in a frame (PlanOptions::light_space)");
+      decision_.framed_share = pool_.framed_share();
+    }
     PlanPool::Entry entry = pool_.make(name);
     decision_.kept = name;
     decision_.reason = "asked for";
@@ -84,8 +90,8 @@ class Chooser {
     return trees_.size() - 1;
   }
 
-  // One candidate after the other, the best first, until one is kept; none is made that could not repay
-  // itself.
+  // One candidate after the other, the best first, until one is kept, and then boxes along the rays; none is
+  // made that could not repay itself.
   void decide() {
     if (probes_.size() < options_.race.least || rays_.fit.empty()) {
       decision_.reason = "too few rays to judge by: " + std::to_string(probes_.size()) + " probes";
@@ -98,13 +104,24 @@ class Chooser {
       if (name == std::string("sah-order") && rays_.query != Query::kAny) continue;
       const double price = pool_.likely_price(name);
       cheapest = std::min(cheapest, price);
-      if (hope > 2.0 * price && consider(name)) return;
+      if (hope > 2.0 * price && consider(name)) break;
     }
+    consider_frame(hope);
     if (!decision_.trials.empty()) return;
     decision_.reason = number(rays_.expected, 0) +
                        " rays cannot repay another tree: the cheapest costs as much as " +
                        number(cheapest, 0) + " box tests, all that they do on the baseline about " +
                        number(hope / (kMostSaved * options_.prices.saved), 0);
+  }
+
+  // By totals before anything is made: boxes of axis-parallel walls are fatter in any frame but the world's.
+  void consider_frame(double hope) {
+    if (!options_.light_space || decision_.obliquity < options_.least_oblique) return;
+    if (!(hope > 2.0 * pool_.likely_price("light-rays"))) return;
+    decision_.framed_share = pool_.framed_share();
+    const bool every = rays_.query == Query::kEvery;
+    if (decision_.framed_share <= (every ? options_.most_framed_every : options_.most_framed))
+      consider("light-rays");
   }
 
   // As many as the share of the baseline's build that probing may take pays for.
@@ -116,7 +133,8 @@ class Chooser {
       probes_.resize(std::min(probes_.size(), static_cast<std::size_t>(std::max(least, most / each))));
   }
 
-  // Makes a candidate and has it race the baseline; whether it is kept.
+  // Makes a candidate and has it race the baseline; whether it is kept, which it is instead of one that saves
+  // less.
   bool consider(const std::string& name) {
     PlanPool::Entry candidate = pool_.make(name);
     Trial trial;
@@ -127,21 +145,35 @@ class Chooser {
     bool kept = false;
     if (name == "sah-rays" && trial.fit_gain < options_.race.least_gain) {
       trial.standing.verdict = Verdict::kNotBetter;
-      decision_.reason = "sampled rays save no more than " + percent(trial.fit_gain) + " of their own cost";
+      if (decision_.tree == 0)
+        decision_.reason = "sampled rays save no more than " + percent(trial.fit_gain) + " of their own cost";
     } else {
       const Race race = run_race(candidate.tree.tree);
       trial.standing = race.standings[0];
       trial.saving = options_.prices.saved * rays_.expected * (trial.standing.baseline - trial.standing.cost);
       const bool better = trial.standing.verdict == Verdict::kBetter;
-      kept = better && trial.saving > trial.price;
-      explain(race, trial, better, kept);
+      kept = better && trial.saving - trial.price > most_saved_;
+      decision_.probes = std::max(decision_.probes, race.rays);
+      if (kept || decision_.kept == "sah") explain(race, trial, better, kept);
     }
+    if (kept) forget_kept();
     if (kept || options_.keep_tried) {
       trial.tree = add(std::move(candidate.tree));
       if (kept) decision_.tree = trial.tree;
     }
+    if (kept) most_saved_ = trial.saving - trial.price;
     decision_.trials.push_back(std::move(trial));
     return kept;
+  }
+
+  // What was kept so far is not.
+  void forget_kept() {
+    if (options_.keep_tried || decision_.tree == 0) return;
+    for (Trial& trial : decision_.trials) {
+      if (trial.tree == decision_.tree) trial.tree = 0;
+    }
+    trees_.pop_back();  // the last one added
+    decision_.tree = 0;
   }
 
   Race run_race(const OrderedTree& candidate) {
@@ -168,7 +200,6 @@ class Chooser {
   }
 
   void explain(const Race& race, const Trial& trial, bool better, bool kept) {
-    decision_.probes = std::max(decision_.probes, race.rays);
     decision_.baseline_cost = race.baseline;
     decision_.cost = race.baseline;
     if (kept) {
@@ -192,6 +223,7 @@ class Chooser {
   PlanPool& pool_;
   std::vector<Ray> probes_;
   std::vector<double> baseline_costs_;  // of the first probes
+  double most_saved_ = 0.0;             // beyond its price, by what is kept
   std::vector<PlanTree>& trees_;
   Decision decision_;
 };
@@ -199,7 +231,8 @@ class Chooser {
 }  // namespace
 
 const std::vector<std::string>& candidate_names() {
-  static const std::vector<std::string> names{"sah", "sah-order", "sah-mix", "sah-rays", "mix", "mix-rays"};
+  static const std::vector<std::string> names{"sah", "sah-order", "sah-mix",   "sah-rays",
+                                              "mix", "mix-rays",  "light-mix", "light-rays"};
   return names;
 }
 
@@ -228,9 +261,12 @@ void PlanOptions::check() const {
   for (const double share : {sample_share, probe_share})
     require(share >= 0.0 && std::isfinite(share), "sample_share or probe_share", std::to_string(share),
             "of finite numbers >= 0");
+  require(least_oblique >= 1.0, "least_oblique", std::to_string(least_oblique), "of numbers >= 1");
+  for (const double share : {most_framed, most_framed_every})
+    require(share >= 0.0, "most_framed or most_framed_every", std::to_string(share), "of numbers >= 0");
   race.check();
   for (const double price : {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish,
-                             prices.learn, prices.trace, prices.byte, prices.saved})
+                             prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})
     require(price >= 0.0 && std::isfinite(price), "prices", std::to_string(price), "of finite numbers >= 0");
 }
 

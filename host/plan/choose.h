@@ -36,6 +36,7 @@ struct PlanPrices {
   double move_start = 120'000.0;  // of reinsertion by areas, until passes end
   double move = 40.0;
   double finish = 5.0;  // of joining leaves, a triangle
+  double turn = 9.0;    // of putting triangles in a frame, three of which are looked at, a triangle
   double learn = 9.0;   // of learning an order of children, a triangle, beside its rays
   double trace = 3.0;   // of a box test of a plan's own: probes and samples are traced by the reference
   double byte = 0.05;   // of a tree that is held beside the baseline
@@ -61,8 +62,16 @@ struct PlanOptions {
   double probe_share = 0.2;
   RaceOptions race;
   PlanPrices prices;
-  std::uint64_t seed = 1;   // of the order in which probes run
-  bool keep_tried = false;  // Plan::trees has every candidate that was made, not only what is kept
+  std::uint64_t seed = 1;  // of the order in which probes run
+  // Trees whose boxes stand along the rays may be kept (gnomon/tree/box_frame.h): only for callers whose
+  // tracer is wide, packet or trace_reference, and who keep trees in no file.
+  bool light_space = false;
+  // Such a tree is made where rays are at least so oblique to the world's axes (light_space.h), and where
+  // they see no more than so much of the baseline's boxes, put in the frame, beside these boxes as they are.
+  double least_oblique = 1.3;
+  double most_framed = 0.95;
+  double most_framed_every = 1.1;  // the same for Query::kEvery, whose cost that is
+  bool keep_tried = false;         // Plan::trees has every candidate that was made, not only what is kept
 
   // Throws Error{kInvalidArgument} naming the option, its value and its range.
   void check() const;
@@ -73,8 +82,11 @@ struct PlanOptions {
 // "sah-rays": reinsertion goes on by sampled rays.
 // "sah-mix": reinsertion goes on by the mixture of surface area and the rays' own measure.
 // "mix", "mix-rays": built by the mixture from the start, and then by sampled rays.
+// "light-mix", "light-rays": as "mix" and "mix-rays", their boxes in a frame along the rays; made for
+// PlanOptions::light_space alone.
 // All but "sah" have the learnt order where any hit is asked for; "sah-order" is for any hit only. "auto"
-// tries "sah-rays", and for any hit "sah-order" where that is not kept.
+// tries "sah-rays", and for any hit "sah-order" where that is not kept; for oblique rays "light-rays" too,
+// which is kept if it saves more than those.
 [[nodiscard]] const std::vector<std::string>& candidate_names();
 
 // A tree of the plan.
@@ -107,6 +119,9 @@ struct Decision {
   double probe_units = 0.0;
   double baseline_cost = 0.0;  // a probe ray, units
   double cost = 0.0;           // of what is kept
+  double obliquity = 1.0;      // of the rays (light_space.h)
+  // What they see of the baseline's boxes in a frame along them, beside those as they are; 0: not reckoned.
+  double framed_share = 0.0;
   std::vector<Trial> trials;
 };
 

@@ -6,6 +6,7 @@
 #include "gnomon/base/error.h"
 #include "gnomon/plan/met_part.h"
 #include "gnomon/plan/sample_mover.h"
+#include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/parents_first.h"
 
 namespace gnomon {
@@ -74,6 +75,7 @@ SampledTree optimise_for_rays(const Bvh& bvh, std::span<const Ray> segments, con
                               const SampledOptions& options) {
   options.check();
   measure.check();
+  refuse_frame(bvh.frame, "optimise_for_rays");
   if (bvh.nodes.empty()) return {bvh, {}, 0.0, 0.0};
   SegmentSet set(segments, box_of(bvh.nodes[0]));
   const MetPart part = met_part(bvh, set, options.least_met);

@@ -35,6 +35,9 @@ Json json_of(const Decision& decision) {
           {"probe_units", decision.probe_units},
           {"baseline_cost", decision.baseline_cost},
           {"cost", decision.cost},
+          {"light_space",
+           {{"obliquity", decision.obliquity},
+            {"framed_share", decision.framed_share > 0.0 ? Json(decision.framed_share) : Json(nullptr)}}},
           {"trials", trials}};
 }
 
@@ -48,7 +51,8 @@ std::string to_json(const Plan& plan) {
                      {"nodes", tree.tree.bvh.nodes.size()},
                      {"bytes", tree.bytes},
                      {"build_units", tree.build_units},
-                     {"learnt_order", !tree.tree.ranks.empty()}});
+                     {"learnt_order", !tree.tree.ranks.empty()},
+                     {"boxes_in_frame", tree.tree.bvh.frame.has_value()}});
   }
   Json decisions = Json::array();
   for (const Decision& decision : plan.decisions) decisions.push_back(json_of(decision));

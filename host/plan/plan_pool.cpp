@@ -5,8 +5,10 @@
 #include "gnomon/plan/child_order.h"
 #include "gnomon/shared/hit_math.h"
 #include "gnomon/shared/measure_math.h"
+#include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/merge_leaves.h"
+#include "gnomon/tree/refit.h"
 
 namespace gnomon {
 
@@ -26,7 +28,7 @@ std::uint64_t bytes_of(const Bvh& bvh) {
 PlanPool::PlanPool(std::span<const Triangle> triangles, const PlanOptions& options,
                    const PlanBuilder& builder)
     : triangles_(triangles), options_(options), builder_(builder) {
-  loose_baseline_ = moved(built(kSurface), kSurface);
+  loose_baseline_ = moved(built(triangles, kSurface), kSurface);
   baseline_ = {"sah", {merge_leaves(loose_baseline_, face_measures(loose_baseline_, kSurface)), {}}, 0.0, 0};
   baseline_.bytes = bytes_of(baseline_.tree.bvh);
   baseline_units_ = build_price() + move_price() + for_all(options.prices.finish);
@@ -44,11 +46,11 @@ double PlanPool::move_price() const {
   return options_.prices.move_start + for_all(options_.prices.move);
 }
 
-Bvh PlanPool::built(const std::array<float, 3>& weights) const {
+Bvh PlanPool::built(std::span<const Triangle> triangles, const std::array<float, 3>& weights) const {
   BuildOptions build;
   build.max_leaf_size = 1;  // leaves are joined at the end, when it is known what lies above them
   std::copy(weights.begin(), weights.end(), build.measure.weights);
-  return builder_.build(triangles_, build);
+  return builder_.build(triangles, build);
 }
 
 Bvh PlanPool::moved(const Bvh& bvh, const std::array<float, 3>& weights) const {
@@ -64,8 +66,35 @@ void PlanPool::aim_at(const PlanRays& rays) {
     if (gn_ray_is_valid(&ray) != 0) fit_.push_back(ray);
   }
   fit_ = thinned(fit_, options_.fit_rays);
-  weights_ = mixed_weights(fit_, query_ == Query::kEvery ? options_.every_share : options_.mixture_share);
+  weights_ = mixed_weights(fit_, own_share());
   expected_cost_ = -1.0;
+  light_ = light_space_of(fit_);
+  frame_.reset();
+}
+
+float PlanPool::own_share() const {
+  return query_ == Query::kEvery ? options_.every_share : options_.mixture_share;
+}
+
+PlanPool::Space PlanPool::along_rays() {
+  if (!frame_) {
+    frame_ = frame_along(light_.direction, triangles_);
+    turned_triangles_ = turned(triangles_, *frame_);
+    turned_fit_ = turned(fit_, *frame_);
+    work_ += for_all(options_.prices.turn);
+  }
+  return {turned_triangles_, turned_fit_, mixed_weights(turned_fit_, own_share()), frame_};
+}
+
+double PlanPool::framed_share() {
+  const Space space = along_rays();
+  Bvh framed = baseline_.tree.bvh;
+  if (framed.nodes.empty()) return 1.0;
+  refit_reference(framed, space.triangles);
+  work_ += for_all(2.0 * kTotalPrice);
+  const double seen = seen_total(baseline_.tree.bvh, mean_components(fit_));
+  // Frames halve the scene.
+  return seen > 0.0 ? 4.0 * seen_total(framed, mean_components(space.fit)) / seen : 1.0;
 }
 
 double PlanPool::expected_cost() {
@@ -89,28 +118,31 @@ double PlanPool::likely_price(const std::string& name) {
   double price = query_ == Query::kAny ? for_all(options_.prices.learn) + rays : 0.0;
   if (name == "sah-order") return price;
   price += for_all(options_.prices.finish);
-  if (name.starts_with("mix")) price += build_price();
-  if (name.find("mix") != std::string::npos) price += move_price();
+  const bool light = name.starts_with("light");
+  if (light && !frame_) price += for_all(options_.prices.turn);
+  if (light || name.starts_with("mix")) price += build_price();
+  if (light || name.find("mix") != std::string::npos) price += move_price();
   if (name.ends_with("-rays")) price += rays + options_.sample_share * baseline_units_;
   return price;
 }
 
 // Moves by sampled rays.
-void PlanPool::fit(const Bvh& from, Entry& entry) {
+void PlanPool::fit(const Bvh& from, const Space& space, Entry& entry) {
   double traced = 0.0;
-  const std::vector<Ray> segments = segments_of(baseline_.tree.bvh, triangles_, fit_, query_, &traced);
+  std::vector<Ray> segments = segments_of(baseline_.tree.bvh, triangles_, fit_, query_, &traced);
+  if (space.frame) segments = turned(segments, *space.frame);
   SampledOptions options = options_.sampled;
   options.most_work = std::min(options.most_work, options_.sample_share * baseline_units_);
-  SampledTree sampled = optimise_for_rays(from, segments, {weights_, options_.prior_share}, options);
+  SampledTree sampled = optimise_for_rays(from, segments, {space.weights, options_.prior_share}, options);
   entry.tree.tree.bvh = merge_leaves(sampled.bvh, sampled.measures, {}, &entry.tree.tree.weights);
   entry.tree.build_units += options_.prices.trace * traced + sampled.work + for_all(options_.prices.finish);
   entry.fit_gain = sampled.saved;
 }
 
-void PlanPool::learn(PlanTree& tree) {
+void PlanPool::learn(PlanTree& tree, const Space& space) {
   OrderOptions order;
-  order.face_weights = weights_;
-  ChildOrder learnt = learn_order(tree.tree.bvh, triangles_, fit_, order);
+  order.face_weights = space.weights;
+  ChildOrder learnt = learn_order(tree.tree.bvh, space.triangles, space.fit, order);
   tree.tree.ranks = std::move(learnt.ranks);
   tree.build_units += for_all(options_.prices.learn) + options_.prices.trace * learnt.work;
   tree.bytes += tree.tree.ranks.size() * sizeof(float);
@@ -120,24 +152,27 @@ PlanPool::Entry PlanPool::make(const std::string& name) {
   Entry entry;
   entry.tree.name = name;
   Bvh& bvh = entry.tree.tree.bvh;
-  const bool mixed = name.find("mix") != std::string::npos;
+  const bool light = name.starts_with("light");
+  const Space space = light ? along_rays() : world();
   if (name == "sah" || name == "sah-order") {
     bvh = baseline_.tree.bvh;
   } else if (name == "sah-rays") {
-    fit(loose_baseline_, entry);
+    fit(loose_baseline_, space, entry);
   } else {
-    const Bvh loose = moved(name == "sah-mix" ? loose_baseline_ : built(weights_), weights_);
-    entry.tree.build_units = move_price() + (name == "sah-mix" ? 0.0 : build_price());
-    if (name == "mix-rays") {
-      fit(loose, entry);
+    const bool again = name != "sah-mix";
+    const Bvh loose = moved(again ? built(space.triangles, space.weights) : loose_baseline_, space.weights);
+    entry.tree.build_units = move_price() + (again ? build_price() : 0.0);
+    if (name.ends_with("-rays")) {
+      fit(loose, space, entry);
     } else {
-      bvh = merge_leaves(loose, face_measures(loose, weights_), {}, &entry.tree.tree.weights);
+      bvh = merge_leaves(loose, face_measures(loose, space.weights), {}, &entry.tree.tree.weights);
       entry.tree.build_units += for_all(options_.prices.finish);
     }
   }
-  if (mixed || name == "sah-rays") entry.tree.bytes = bytes_of(bvh);
+  if (name != "sah" && name != "sah-order") entry.tree.bytes = bytes_of(bvh);
   entry.tree.bytes += entry.tree.tree.weights.size() * sizeof(float);
-  if (query_ == Query::kAny && name != "sah") learn(entry.tree);
+  if (query_ == Query::kAny && name != "sah") learn(entry.tree, space);
+  bvh.frame = space.frame;  // last: until then triangles and rays are turned
   work_ += entry.tree.build_units;
   return entry;
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "gnomon/plan/choose.h"
+#include "gnomon/plan/light_space.h"
 
 namespace gnomon {
 
@@ -22,6 +23,10 @@ class PlanPool {
   [[nodiscard]] double expected_cost();
   // What a candidate will take at most beside the baseline, before it is made.
   [[nodiscard]] double likely_price(const std::string& name);
+  // How oblique the rays are, and what they see of the baseline's boxes, put in a frame along them, over what
+  // they see of them as they are. No ray is traced for this.
+  [[nodiscard]] double obliquity() const { return light_.obliquity; }
+  [[nodiscard]] double framed_share();
   // A candidate's tree with what it took, and the share of its weight that sampled rays saved.
   struct Entry {
     PlanTree tree;
@@ -30,10 +35,20 @@ class PlanPool {
   [[nodiscard]] Entry make(const std::string& name);
 
  private:
-  [[nodiscard]] Bvh built(const std::array<float, 3>& weights) const;
+  // What trees are made of: the scene and the rays as they are, or turned.
+  struct Space {
+    std::span<const Triangle> triangles;
+    std::span<const Ray> fit;
+    std::array<float, 3> weights;
+    std::optional<BoxFrame> frame{};
+  };
+  [[nodiscard]] Space world() const { return {triangles_, fit_, weights_}; }
+  [[nodiscard]] Space along_rays();
+  [[nodiscard]] Bvh built(std::span<const Triangle> triangles, const std::array<float, 3>& weights) const;
   [[nodiscard]] Bvh moved(const Bvh& bvh, const std::array<float, 3>& weights) const;
-  void fit(const Bvh& from, Entry& entry);
-  void learn(PlanTree& tree);
+  void fit(const Bvh& from, const Space& space, Entry& entry);
+  void learn(PlanTree& tree, const Space& space);
+  [[nodiscard]] float own_share() const;  // of the rays' own measure in weights
   [[nodiscard]] double build_price() const;
   [[nodiscard]] double move_price() const;
   [[nodiscard]] double for_all(double price) const;  // of one a triangle
@@ -49,6 +64,11 @@ class PlanPool {
   std::vector<Ray> fit_;
   double expected_cost_ = -1.0;  // negative: not reckoned yet
   std::array<float, 3> weights_{1.0F, 1.0F, 1.0F};
+  LightSpace light_;
+  // Along the rays; made when it is asked for.
+  std::optional<BoxFrame> frame_;
+  std::vector<Triangle> turned_triangles_;
+  std::vector<Ray> turned_fit_;
 };
 
 }  // namespace gnomon

@@ -1,5 +1,6 @@
 #include "gnomon/plan/ray_sample.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -52,14 +53,18 @@ namespace {
 GnRayCounters count_every(const Bvh& bvh, Ray ray) {
   GnRayCounters counters{0, 0};
   if (bvh.nodes.empty() || gn_ray_is_valid(&ray) == 0) return counters;
+  ray.tmin = gn_finite_tmin(ray.tmin);
   const GnRayFrame frame = gn_ray_frame(&ray);
+  const GnBoxRay turned = bvh.frame ? gn_box_ray(&*bvh.frame, &ray) : GnBoxRay{};
   const float limit = gn_slab_limit(gn_finite_tmax(ray.tmax));
   std::vector<std::uint32_t> waiting{0};
   while (!waiting.empty()) {
     const Node& node = bvh.nodes[waiting.back()];
     waiting.pop_back();
     counters.boxes += 1;
-    if (!(gn_box_entry(&frame, node.lo, node.hi, gn_finite_tmin(ray.tmin), limit) < GN_INFINITY)) continue;
+    const float entry = bvh.frame ? gn_framed_box_entry(&turned, node.lo, node.hi, ray.tmin, limit)
+                                  : gn_box_entry(&frame, node.lo, node.hi, ray.tmin, limit);
+    if (!(entry < GN_INFINITY)) continue;
     counters.triangles += node.count;
     if (node.count > 0) continue;
     waiting.push_back(node.first);
@@ -84,18 +89,26 @@ std::vector<double> ray_costs(const OrderedTree& tree, std::span<const Triangle>
   return out;
 }
 
+std::array<double, 3> mean_components(std::span<const Ray> rays) {
+  std::array<double, 3> mean{};
+  double count = 0.0;
+  for (const Ray& ray : rays) {
+    if (gn_ray_is_valid(&ray) == 0) continue;
+    double square = 0.0;
+    for (const float d : ray.direction) square += double{d} * double{d};
+    for (std::size_t k = 0; k < 3; ++k) mean[k] += std::fabs(double{ray.direction[k]}) / std::sqrt(square);
+    count += 1.0;
+  }
+  for (double& m : mean) m /= std::max(count, 1.0);
+  return mean;
+}
+
 std::array<float, 3> mixed_weights(std::span<const Ray> rays, float share) {
   if (!(share >= 0.0F && share <= 1.0F)) {
     throw Error(ErrorCode::kInvalidArgument, "the share of the rays' own measure in a mixture is " +
                                                  std::to_string(share) + "; it must lie in [0, 1]");
   }
-  std::array<double, 3> mean{};
-  for (Ray ray : rays) {
-    if (gn_ray_is_valid(&ray) == 0) continue;
-    double square = 0.0;
-    for (const float d : ray.direction) square += double{d} * double{d};
-    for (std::size_t k = 0; k < 3; ++k) mean[k] += std::fabs(double{ray.direction[k]}) / std::sqrt(square);
-  }
+  const std::array<double, 3> mean = mean_components(rays);
   const double sum = mean[0] + mean[1] + mean[2];
   if (sum == 0.0) return {1.0F, 1.0F, 1.0F};
   std::array<float, 3> out{};

@@ -45,6 +45,9 @@ struct OrderedTree {
 [[nodiscard]] std::vector<double> ray_costs(const OrderedTree& tree, std::span<const Triangle> triangles,
                                             std::span<const Ray> rays, Query query);
 
+// E|d_k| of the rays' unit directions; 0 where none is traceable.
+[[nodiscard]] std::array<double, 3> mean_components(std::span<const Ray> rays);
+
 // Face weights that measure boxes as these rays see them, mixed with surface area: share E|d_k| of unit
 // directions, over that of a cube, and 1 - share of the same weight for all faces. No rays: surface area.
 // share in [0, 1]; throws Error{kInvalidArgument} otherwise.

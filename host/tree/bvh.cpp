@@ -53,6 +53,7 @@ std::string tree_hash(const Bvh& bvh) {
   XXH3_64bits_reset(state.get());
   XXH3_64bits_update(state.get(), bvh.nodes.data(), bvh.nodes.size() * sizeof(Node));
   XXH3_64bits_update(state.get(), bvh.primitives.data(), bvh.primitives.size() * sizeof(std::uint32_t));
+  if (bvh.frame) XXH3_64bits_update(state.get(), &*bvh.frame, sizeof(BoxFrame));
   char text[17];
   std::snprintf(text, sizeof text, "%016llx",
                 static_cast<unsigned long long>(XXH3_64bits_digest(state.get())));

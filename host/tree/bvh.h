@@ -3,15 +3,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "gnomon/shared/box_frame.h"
 #include "gnomon/shared/layout.h"
 #include "gnomon/tree/build_options.h"
 
 namespace gnomon {
 
 using Node = GnNode;
+using BoxFrame = GnBoxFrame;
 
 // A bounding volume hierarchy over n triangles. Empty input gives no nodes at all.
 // Inner nodes are numbered by the place in leaf order where they split, so a subtree's nodes are neighbours
@@ -19,6 +22,7 @@ using Node = GnNode;
 struct Bvh {
   std::vector<Node> nodes;                // root first; siblings adjacent
   std::vector<std::uint32_t> primitives;  // leaf order -> index in the caller's triangles
+  std::optional<BoxFrame> frame{};        // boxes stand in this (box_frame.h); none: where triangles do
 };
 
 // What a tree looks like. Costs follow the surface area heuristic with the options' constants, relative to

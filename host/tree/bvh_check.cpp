@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/build_best_reference.h"
 #include "gnomon/tree/cover.h"
 #include "gnomon/tree/parts.h"
@@ -254,6 +255,10 @@ MaybeFault check_depth(const Bvh& bvh, const Walk& walk, std::size_t triangles, 
 
 std::optional<BvhFault> check_bvh(const Bvh& bvh, std::span<const GnTriangle> triangles,
                                   const BuildOptions& options) {
+  if (bvh.frame) {
+    if (const auto wrong = fault_of(*bvh.frame, triangles)) return fault("frame: " + *wrong);
+    return check_bvh({bvh.nodes, bvh.primitives}, turned(triangles, *bvh.frame), options);
+  }
   if (MaybeFault found = check_sizes(bvh, triangles, options)) return found;
   if (triangles.empty()) return std::nullopt;
   Walk walk;

@@ -11,6 +11,7 @@
 
 #include "gnomon/base/error.h"
 #include "gnomon/shared/compact_math.h"
+#include "gnomon/tree/box_frame.h"
 
 namespace gnomon {
 namespace {
@@ -111,6 +112,7 @@ void throw_compact_leaf_too_large(std::uint32_t triangles) {
 }
 
 CompactBvh compact_reference(const WideBvh& wide) {
+  refuse_frame(wide.frame, "the compact layout");
   return Compaction(wide).run();
 }
 

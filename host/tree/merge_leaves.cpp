@@ -27,6 +27,7 @@ class Merger {
 
   Bvh run() {
     out_.primitives = bvh_.primitives;
+    out_.frame = bvh_.frame;
     out_.nodes.resize(2 * std::size_t{below_[0].inner} + 1);
     if (kept_ != nullptr) kept_->resize(out_.nodes.size());
     write(0, 0, 0);

@@ -201,6 +201,7 @@ class Optimiser {
   [[nodiscard]] Bvh renumber() const {
     Bvh out;
     out.nodes.resize(bvh_.nodes.size());
+    out.frame = bvh_.frame;
     write(out, GN_ROOT_SLOT, 0, 0);
     return out;
   }

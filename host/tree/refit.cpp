@@ -7,6 +7,7 @@
 
 #include "gnomon/base/error.h"
 #include "gnomon/shared/cost_math.h"
+#include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/build_reference.h"
 
 namespace gnomon {
@@ -121,6 +122,7 @@ void require_count(std::size_t given, std::size_t built) {
 
 void refit_reference(Bvh& bvh, std::span<const GnTriangle> triangles) {
   require_count(triangles.size(), bvh.primitives.size());
+  refuse_frame(bvh.frame, "refitting");
   if (triangles.empty()) return;
   const std::vector<GnPrimitive> boxes = checked_boxes(triangles);
   const std::vector<std::uint32_t> order = from_the_root(bvh);
@@ -135,6 +137,7 @@ void refit_reference(Bvh& bvh, std::span<const GnTriangle> triangles) {
 
 void refit_reference(WideBvh& wide, std::span<const GnTriangle> triangles) {
   require_count(triangles.size(), triangles_of(wide));
+  refuse_frame(wide.frame, "refitting");
   if (!triangles.empty()) static_cast<void>(WideRefit(wide, triangles).node(0));
 }
 

@@ -26,6 +26,7 @@ class Walk {
         ranks_(any_hit ? ranks : std::span<const float>{}),
         frame_(gn_ray_frame(&ray)) {
     limit_ = gn_slab_limit(ray.tmax);
+    if (bvh.frame) turned_ = gn_box_ray(&*bvh.frame, &ray);
   }
 
   void run() {
@@ -53,7 +54,8 @@ class Walk {
   float entry_of(std::uint32_t index) {
     counters.boxes += 1;
     const Node& node = bvh_.nodes[index];
-    return gn_box_entry(&frame_, node.lo, node.hi, ray_.tmin, limit_);
+    return turned_ ? gn_framed_box_entry(&*turned_, node.lo, node.hi, ray_.tmin, limit_)
+                   : gn_box_entry(&frame_, node.lo, node.hi, ray_.tmin, limit_);
   }
 
   // The nearer child, or the one of higher rank, is tested next; of equals the left one.
@@ -90,6 +92,7 @@ class Walk {
   bool any_hit_;
   std::span<const float> ranks_;
   GnRayFrame frame_;
+  std::optional<GnBoxRay> turned_;
   float limit_ = 0.0F;
 };
 

@@ -28,9 +28,13 @@ class Walk {
   Walk(const WideBvh& wide, const Ray& ray, bool any_hit)
       : wide_(wide), ray_(ray), any_hit_(any_hit), frame_(gn_ray_frame(&ray)) {
     limit_ = limit_for(ray.tmax);
+    std::copy(ray.origin, ray.origin + 3, boxes_.near_origin);
+    std::copy(ray.origin, ray.origin + 3, boxes_.far_origin);
+    std::copy(frame_.inverse, frame_.inverse + 3, boxes_.inverse);
+    if (wide.frame) boxes_ = gn_box_ray(&*wide.frame, &ray);
     for (int k = 0; k < 3; ++k) {
-      far_inverse_[k] = gn_slab_limit(gn_abs(frame_.inverse[k]));
-      if (frame_.inverse[k] < 0.0F) far_inverse_[k] = -far_inverse_[k];
+      far_inverse_[k] = gn_slab_limit(gn_abs(boxes_.inverse[k]));
+      if (boxes_.inverse[k] < 0.0F) far_inverse_[k] = -far_inverse_[k];
     }
     far_margin_ = ray.tmin < 0.0F ? -4.0F * GN_SLAB_SLACK * ray.tmin : 0.0F;
   }
@@ -62,10 +66,10 @@ class Walk {
     float near = ray_.tmin;
     float far = limit_;
     for (int k = 0; k < 3; ++k) {
-      const int backwards = frame_.inverse[k] < 0.0F ? 1 : 0;
-      const float first = node.planes[2 * k + backwards][slot] - frame_.origin[k];
-      const float second = node.planes[2 * k + 1 - backwards][slot] - frame_.origin[k];
-      near = gn_max(first * frame_.inverse[k], near);
+      const int backwards = boxes_.inverse[k] < 0.0F ? 1 : 0;
+      const float first = node.planes[2 * k + backwards][slot] - boxes_.near_origin[k];
+      const float second = node.planes[2 * k + 1 - backwards][slot] - boxes_.far_origin[k];
+      near = gn_max(first * boxes_.inverse[k], near);
       far = gn_min(std::fma(second, far_inverse_[k], far_margin_), far);
     }
     entry = near;
@@ -167,6 +171,7 @@ class Walk {
   const Ray& ray_;
   bool any_hit_;
   GnRayFrame frame_;
+  GnBoxRay boxes_{};
   float far_inverse_[3];
   float far_margin_ = 0.0F;
   float limit_ = 0.0F;

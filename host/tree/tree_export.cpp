@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gnomon/scene/write_file.h"
+#include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/joined_bytes.h"
 
 namespace gnomon {
@@ -46,6 +47,7 @@ std::vector<Node> renumbered(const std::vector<Node>& nodes) {
 }  // namespace
 
 std::vector<std::byte> bvh2_bytes(const Bvh& bvh, std::span<const GnTriangle> triangles) {
+  refuse_frame(bvh.frame, "the plain node layout");
   const std::vector<Node> nodes = renumbered(bvh.nodes);
   Header header;
   header.nodes = static_cast<std::uint32_t>(nodes.size());

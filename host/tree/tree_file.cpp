@@ -13,6 +13,7 @@
 #include "gnomon/scene/read_file.h"
 #include "gnomon/scene/scene.h"
 #include "gnomon/scene/write_file.h"
+#include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/bvh_check.h"
 #include "gnomon/tree/joined_bytes.h"
 
@@ -167,6 +168,7 @@ Header checked_header(std::span<const std::byte> bytes) {
 std::vector<std::byte> tree_to_bytes(const Bvh& bvh, const BuildOptions& options,
                                      std::span<const GnTriangle> triangles, bool fitted) {
   options.check();
+  refuse_frame(bvh.frame, "a tree file");
   if (const auto fault = check_bvh(bvh, triangles, options))
     throw Error(ErrorCode::kInvalidArgument, "no file is made of a broken tree: " + fault->what);
   Header header = header_of(bvh, options, triangles);

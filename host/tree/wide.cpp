@@ -51,6 +51,7 @@ class Collapse {
 
   WideBvh run() {
     wide_.nodes.push_back(empty_node());
+    wide_.frame = bvh_.frame;
     emit(0, 0, 1);
     return std::move(wide_);
   }
@@ -239,6 +240,7 @@ std::string tree_hash(const WideBvh& wide) {
   XXH3_64bits_reset(&state);
   XXH3_64bits_update(&state, wide.nodes.data(), wide.nodes.size() * sizeof(WideNode));
   XXH3_64bits_update(&state, wide.blocks.data(), wide.blocks.size() * sizeof(TriangleBlock));
+  if (wide.frame) XXH3_64bits_update(&state, &*wide.frame, sizeof(BoxFrame));
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(XXH3_64bits_digest(&state)));
   return text;

@@ -33,7 +33,8 @@ struct CollapseOptions {
 struct WideBvh {
   std::vector<WideNode> nodes;
   std::vector<TriangleBlock> blocks;
-  std::uint32_t depth = 0;  // nodes on the longest way from the root to a leaf
+  std::uint32_t depth = 0;          // nodes on the longest way from the root to a leaf
+  std::optional<BoxFrame> frame{};  // Bvh's
 };
 
 // Leaves of the binary tree may hold up to GN_MAX_WIDE_LEAF triangles; others make it throw

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gnomon/shared/collapse_math.h"
+#include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/cover.h"
 #include "gnomon/tree/wide.h"
 
@@ -53,9 +54,15 @@ bool holds(const Node& box, const float point[3]) {
 class Check {
  public:
   Check(const WideBvh& wide, std::span<const GnTriangle> triangles, Repeats repeats, SlotOrder order)
-      : wide_(wide), triangles_(triangles), repeats_(repeats), slot_order_(order), boxes_(triangles.size()) {}
+      : wide_(wide), triangles_(triangles), repeats_(repeats), slot_order_(order), boxes_(triangles.size()) {
+    if (wide.frame) turned_ = turned(triangles, *wide.frame);
+    boxed_ = wide.frame ? std::span<const GnTriangle>(turned_) : triangles;
+  }
 
   MaybeFault run() {
+    if (wide_.frame) {
+      if (const auto wrong = fault_of(*wide_.frame, triangles_)) return fault("frame: " + *wrong);
+    }
     if (MaybeFault found = check_sizes()) return found;
     if (MaybeFault found = check_links()) return found;
     for (const std::uint32_t node : order_) {
@@ -70,7 +77,7 @@ class Check {
     if (wide_.depth != deepest_)
       return fault("depth: " + text(wide_.depth) + " instead of " + text(deepest_));
     for (std::size_t i = 0; i < triangles_.size() && repeats_ == Repeats::kAllowed; ++i) {
-      if (!boxes_cover(triangles_[i], boxes_.of(i)))
+      if (!boxes_cover(boxed_[i], boxes_.of(i)))
         return fault("cover: triangle " + text(i) + " is not wholly in the leaves that hold it");
     }
     return std::nullopt;
@@ -135,6 +142,10 @@ class Check {
     return std::nullopt;
   }
 
+  static const float* corner_of(const GnTriangle& triangle, int k) {
+    return k == 0 ? triangle.v0 : k == 1 ? triangle.v1 : triangle.v2;
+  }
+
   // What a node's slots are by themselves.
   [[nodiscard]] MaybeFault check_slots(std::uint32_t index) const {
     const WideNode& node = wide_.nodes[index];
@@ -196,14 +207,13 @@ class Check {
         return fault("triangles: " + text(primitive) + " appears twice", index);
       triangle_seen_[primitive] = 1;
       if (repeats_ == Repeats::kAllowed) boxes_.add(primitive, box);
-      const GnTriangle& triangle = triangles_[primitive];
       for (int k = 0; k < 3; ++k) {
-        const float* corner = k == 0 ? triangle.v0 : k == 1 ? triangle.v1 : triangle.v2;
+        const float* corner = corner_of(triangles_[primitive], k);
         if (!std::equal(corner, corner + 3, corners + 3 * k))
           return fault("triangles: corner " + text(static_cast<unsigned>(k)) + " of " + text(primitive) +
                            " is another",
                        index);
-        if (!holds(box, corner) && repeats_ == Repeats::kNone)
+        if (!holds(box, corner_of(boxed_[primitive], k)) && repeats_ == Repeats::kNone)
           return fault("box: triangle " + text(primitive) + " reaches beyond its leaf's", index);
       }
     }
@@ -212,6 +222,8 @@ class Check {
 
   const WideBvh& wide_;
   std::span<const GnTriangle> triangles_;
+  std::vector<GnTriangle> turned_;
+  std::span<const GnTriangle> boxed_;  // as boxes stand
   Repeats repeats_;
   SlotOrder slot_order_;
   TriangleBoxes boxes_;

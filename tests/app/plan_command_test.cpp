@@ -66,6 +66,34 @@ TEST_CASE("trace --plan answers as trace does, for less work") {
   }
 }
 
+TEST_CASE(
+    "boxes along a sun's rays are kept where they are traced, with the same hits, and refused elsewhere") {
+  const std::vector<std::string> plain{"trace", "gen:terrain:8k", "--rays", "shadow", "--count",
+                                       "4k",    "--repeat",       "1",      "--json"};
+  for (const std::string flavour : {"auto", "wide", "packet"}) {
+    CAPTURE(flavour);
+    auto framed = plain;
+    framed.insert(framed.end(), {"--flavour", flavour, "--plan", "light-rays"});
+    const json before = document_of(plain);
+    const json after = document_of(framed);
+    REQUIRE(after["plan"]["chosen"][0]["tree"] == "light-rays");
+    REQUIRE(after["plan"]["decisions"][0]["light_space"]["obliquity"] > 1.3);
+    REQUIRE(after["plan"]["trees"].back()["boxes_in_frame"] == true);
+    REQUIRE(after["hits"] == before["hits"]);
+    REQUIRE(after["tree"]["hash"] != before["tree"]["hash"]);
+  }
+  const json plan = document_of({"plan", "gen:terrain:8k", "--rays", "shadow", "--json"});
+  REQUIRE(plan["decisions"][0]["light_space"]["obliquity"] > 1.3);
+  auto compact = plain;
+  compact.insert(compact.end(), {"--flavour", "compact", "--plan", "light-rays"});
+  for (const std::vector<std::string>& refused :
+       {compact, std::vector<std::string>{"build", "gen:terrain:8k", "--plan", "light-rays"}}) {
+    const auto answer = run(refused);
+    REQUIRE(answer.status != 0);
+    REQUIRE_THAT(answer.err, Catch::Contains("light-rays") && Catch::Contains("wide or packet"));
+  }
+}
+
 TEST_CASE("options that say which tree leave no plan, and exclude one") {
   for (const std::vector<std::string>& own : std::vector<std::vector<std::string>>{
            {"--builder", "fast"}, {"--max-leaf", "4"}, {"--axes", "lsph"}}) {

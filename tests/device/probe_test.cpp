@@ -8,6 +8,7 @@
 #include "gnomon/cl/launch.h"
 #include "gnomon/cl/program.h"
 #include "gnomon/shared/area_math.h"
+#include "gnomon/shared/box_frame.h"
 #include "gnomon/shared/compact_layout.h"
 #include "gnomon/shared/cost_math.h"
 #include "gnomon/shared/hit_math.h"
@@ -38,7 +39,7 @@ cl::Buffer buffer_of(const char* name, const std::vector<T>& values) {
 }  // namespace
 
 TEST_CASE("the device lays out every shared struct as the host does", "[portable][memcheck]") {
-  const cl::Buffer out = context().create_buffer("layout", 39 * sizeof(std::uint32_t));
+  const cl::Buffer out = context().create_buffer("layout", 41 * sizeof(std::uint32_t));
   run("probe_layout", 1, out);
   const std::vector<std::uint32_t> expected = {sizeof(GnTriangle),
                                                sizeof(GnLeafTriangle),
@@ -78,8 +79,10 @@ TEST_CASE("the device lays out every shared struct as the host does", "[portable
                                                sizeof(GnIndexedTriangle),
                                                sizeof(GnVertex),
                                                sizeof(GnPlainTriangle),
-                                               offsetof(GnCompactNode, planes)};
-  REQUIRE(context().download_values<std::uint32_t>(out, 39) == expected);
+                                               offsetof(GnCompactNode, planes),
+                                               sizeof(GnBoxFrame),
+                                               offsetof(GnBoxFrame, size)};
+  REQUIRE(context().download_values<std::uint32_t>(out, 41) == expected);
 }
 
 TEST_CASE("arithmetic that decides trees has the same bits on the device", "[portable][memcheck]") {

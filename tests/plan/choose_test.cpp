@@ -176,6 +176,7 @@ TEST_CASE("where sampled rays bring nothing, any hit still gets its order") {
 
 TEST_CASE("a choice by name is kept without a test") {
   PlanOptions options;
+  options.light_space = true;
   for (const std::string& name : gnomon::candidate_names()) {
     CAPTURE(name);
     options.choice = name;
@@ -184,7 +185,12 @@ TEST_CASE("a choice by name is kept without a test") {
     REQUIRE(plan.decisions[1].kept == name);
     REQUIRE(plan.trees[plan.decisions[1].tree].tree.ranks.empty() == (name == "sah"));
     REQUIRE(plan.decisions[1].probes == 0);
+    REQUIRE(plan.trees[plan.decisions[1].tree].tree.bvh.frame.has_value() == name.starts_with("light"));
   }
+  options = {};
+  options.choice = "light-rays";
+  REQUIRE_THROWS_WITH(gnomon::make_plan(cottage().triangles, both_kinds(1.0), options),
+                      Catch::Contains("light_space"));
   options.choice = "best";
   REQUIRE_THROWS_WITH(gnomon::make_plan(cottage().triangles, both_kinds(1.0), options),
                       Catch::Contains("best") && Catch::Contains("mix-rays"));

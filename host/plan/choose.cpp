@@ -150,7 +150,9 @@ class Chooser {
     } else {
       const Race race = run_race(candidate.tree.tree);
       trial.standing = race.standings[0];
-      trial.saving = options_.prices.saved * rays_.expected * (trial.standing.baseline - trial.standing.cost);
+      const bool dearer = candidate.tree.tree.bvh.frame.has_value() && rays_.query != Query::kEvery;
+      const double cost = trial.standing.cost * (dearer ? options_.framed_work : 1.0);
+      trial.saving = options_.prices.saved * rays_.expected * (trial.standing.baseline - cost);
       const bool better = trial.standing.verdict == Verdict::kBetter;
       kept = better && trial.saving - trial.price > most_saved_;
       decision_.probes = std::max(decision_.probes, race.rays);
@@ -264,6 +266,8 @@ void PlanOptions::check() const {
   require(least_oblique >= 1.0, "least_oblique", std::to_string(least_oblique), "of numbers >= 1");
   for (const double share : {most_framed, most_framed_every})
     require(share >= 0.0, "most_framed or most_framed_every", std::to_string(share), "of numbers >= 0");
+  require(framed_work >= 1.0 && std::isfinite(framed_work), "framed_work", std::to_string(framed_work),
+          "of finite numbers >= 1");
   race.check();
   for (const double price : {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish,
                              prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})

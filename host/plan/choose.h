@@ -71,7 +71,11 @@ struct PlanOptions {
   double least_oblique = 1.3;
   double most_framed = 0.95;
   double most_framed_every = 1.1;  // the same for Query::kEvery, whose cost that is
-  bool keep_tried = false;         // Plan::trees has every candidate that was made, not only what is kept
+  // What a ray's work in such a tree is worth, in work of other trees, where time is saved by it and not by
+  // counts alone (Query::kEvery): rays in packets part sooner there. 1.1 to 1.6 measured
+  // (host/notes/light-space.md).
+  double framed_work = 1.4;
+  bool keep_tried = false;  // Plan::trees has every candidate that was made, not only what is kept
 
   // Throws Error{kInvalidArgument} naming the option, its value and its range.
   void check() const;

@@ -172,6 +172,18 @@ TEST_CASE("walls along the axes stay in the world's: totals say so before a tree
   }
 }
 
+TEST_CASE("where time counts, work in a frame is worth more of it than other work") {
+  const auto triangles = gnomon::test::soup(3000, 400, 0.3F);
+  PlanOptions options;
+  options.light_space = true;
+  options.framed_work = 10.0;
+  const Plan plan = gnomon::make_plan(triangles, sun_kinds({1, -1, 1}), options);
+  for (const gnomon::Decision& decision : plan.decisions) {
+    CAPTURE(decision.rays, decision.kept);
+    REQUIRE(decision.kept.starts_with("light") == (decision.query == Query::kEvery));
+  }
+}
+
 TEST_CASE("a tree that saves more takes the place of one that was kept") {
   const auto triangles = gnomon::test::soup(3000, 404, 0.3F);
   // Through a part of the scene, and from within: there moves by sampled rays pay too.
@@ -210,4 +222,7 @@ TEST_CASE("frames' options out of range are refused") {
   options = {};
   options.most_framed = NAN;
   REQUIRE_THROWS_WITH(options.check(), Catch::Contains("most_framed"));
+  options = {};
+  options.framed_work = 0.5;
+  REQUIRE_THROWS_WITH(options.check(), Catch::Contains("framed_work"));
 }

@@ -51,10 +51,8 @@ static inline GnTwoSides sides_at(const GnSideExtents* in, uint plane) {
 static inline float8 faces_of(const float* w, GnTwoSides d) { return d.x * (w[1] * d.z + w[2] * d.y) + w[0] * d.y * d.z; }
 static inline float8 half_surfaces_of(GnTwoSides d) { return d.x * (d.y + d.z) + d.y * d.z; }
 
-static inline float8 least_of_both(float8 x) {
-  const float4 least = GN_VMIN(x.lo, x.hi);
-  return (float8)(least, least);
-}
+// The lesser of both halves, in both: oclgrind 21.10 does not survive a vector of eight made of two.
+static inline float8 least_of_both(float8 x) { return GN_VMIN(x, x.s45670123); }
 
 // The cheapest split of every axis, to best_of_axis; axis == GN_NONE where there is none: on an axis without extent all are
 // in the first bin, and no plane divides them. w: the face weights. breaks_ties: a literal, as GnMeasure has it. bin_count:
@@ -110,7 +108,7 @@ GN_LANES_INLINE void sweep_by_faces(const float* w, const int breaks_ties, __loc
   }
   // Evenness, then the lower plane: one number, the larger the better.
   int8 rank = (int8)(-1);
-  int8 turned = (int8)((int4)((1 << GN_PLANE_BITS) - 1), (int4)((1 << GN_PLANE_BITS) - 2));
+  int8 turned = (int8)((1 << GN_PLANE_BITS) - 1) - (int8)(0, 0, 0, 0, 1, 1, 1, 1);
   for (i = 0u; i < planes; i += 2u) {
     const int8 here = vload8(0, seen + 4u * i);
     const int8 even = min(here, (int8)((int)count) - here);

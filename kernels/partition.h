@@ -105,7 +105,8 @@ static inline GnTwoBounds partition_range(__global const float8* from, __global 
   float8 left_bounds = (float8)(INFINITY), right_bounds = (float8)(INFINITY);
   const GnComparison comparison = comparison_of(side);
   // Other numbers in the lanes that are nobody's: where all are the same, compilers compare one and spread the answer.
-  const float8 bounds_of_lanes = (float8)((float4)((float3)(comparison.bound), 0.0f), (float4)((float3)(comparison.bound), 0.0f));
+  const float bound = comparison.bound;
+  const float8 bounds_of_lanes = (float8)(bound, bound, bound, 0.0f, bound, bound, bound, 0.0f);
   for (i = begin; i < end; ++i) {
     const float8 primitive = from[i];
     const float place = compared_place(from + i, i, side, comparison);

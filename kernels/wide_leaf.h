@@ -56,7 +56,7 @@ typedef struct GnWideWalk {
 
 #if GN_FRAME
 #define GN_FAR_ORIGIN(ray, k) (ray)->far_origin[k]
-static inline GnWideRay wide_ray(const GnRay* ray, const GnBoxFrame* boxes) {
+static inline GnWideRay wide_ray(const GnRay* ray, __global const GnBoxFrame* boxes) {
   const GnBoxRay turned = gn_box_ray(boxes, ray);
 #else
 #define GN_FAR_ORIGIN(ray, k) (ray)->origin[k]

@@ -90,15 +90,15 @@ typedef struct GnWideBatch {
   volatile __global uint* invalid_rays;
   __global GnRayCounters* counters;
 #if GN_FRAME
-  GnBoxFrame boxes;
+  __global const GnBoxFrame* boxes;
 #endif
 } GnWideBatch;
 
 // What kernels take beyond the others' parameters for boxes in a frame, and put at a batch's end.
 #if GN_FRAME
 #define GN_FRAME_PARAMETER , __global const GnBoxFrame* boxes
-#define GN_FRAME_OF_BATCH , *boxes
-#define GN_TAKE_RAY(ray, batch) wide_ray(ray, &(batch)->boxes)
+#define GN_FRAME_OF_BATCH , boxes
+#define GN_TAKE_RAY(ray, batch) wide_ray(ray, (batch)->boxes)
 #else
 #define GN_FRAME_PARAMETER
 #define GN_FRAME_OF_BATCH

@@ -26,7 +26,7 @@ class PlanEntrant : public Entrant {
     if (rays.empty())
       throw Error(ErrorCode::kInvalidArgument, "the scene has no rays of these kinds to plan for");
     PlanOptions how;
-    how.light_space = traces_wide(context_.device());
+    how.light_space = traces_wide(context_.device()) && context_.device().loop_limit == 0;
     plan_ = make_plan(scene_.triangles, rays, how, builder_, progress);
     for (const PlanTree& kept : plan_.trees)
       trees_.emplace_back(context_, upload_bvh(context_, kept.tree.bvh, scene_.triangles),

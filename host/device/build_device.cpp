@@ -67,17 +67,19 @@ class Input {
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
   ~Input() {
-    try {
-      context_.wait_for_enqueued();
-    } catch (const Error&) {
-      // A device that fails here has failed the build before, or will fail whoever uses the tree.
-    }
+    if (!is_read_) static_cast<void>(clFinish(context_.queue()));
+  }
+  // Blocks until nothing reads the memory any more. Throws Error{kDevice}.
+  void wait() {
+    context_.wait_for_enqueued();
+    is_read_ = true;
   }
   [[nodiscard]] cl_mem memory() const { return buffer_.mem.get(); }
 
  private:
   const cl::Context& context_;
   cl::Buffer buffer_;
+  bool is_read_ = false;
 };
 
 }  // namespace
@@ -88,9 +90,10 @@ DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> tri
   const std::vector<BufferNeed> needs = build_memory(context.device(), triangles.size(), options);
   if (triangles.empty()) return upload_bvh(context, {}, {});
   refuse_what_does_not_fit(context.device(), needs);
-  const Input input(context, triangles);
+  Input input(context, triangles);
   const auto count = static_cast<std::uint32_t>(triangles.size());
   DeviceBvh tree = build_checked(context, input.memory(), count, options, needs, out, progress);
+  input.wait();
   if (out != nullptr) {
     out->total_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

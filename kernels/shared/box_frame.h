@@ -15,7 +15,7 @@ typedef struct GnBoxFrame {
 } GnBoxFrame;
 GN_SIZE_IS(GnBoxFrame, 48);
 
-GN_INLINE void gn_turn(const GnBoxFrame* frame, const gn_f32* v, gn_f32* out) {
+GN_INLINE void gn_turn(GN_GLOBAL const GnBoxFrame* frame, const gn_f32* v, gn_f32* out) {
   gn_u32 k;
   for (k = 0u; k < 3u; ++k)
     out[k] = frame->rows[3u * k] * v[0] + frame->rows[3u * k + 1u] * v[1] + frame->rows[3u * k + 2u] * v[2];
@@ -43,7 +43,7 @@ typedef struct GnBoxRay {
 // together less than 7.6u s + 5.8u |o|, of which 8u (s + |o|) leaves enough for rounding the margin. Within it the ray as
 // it is computed passes every box that the exact ray meets a triangle of, at the same t; from there on ray_math.h's slack
 // holds as it does for other rays. |o| may overflow, its terms' shares do not.
-GN_INLINE GnBoxRay gn_box_ray(const GnBoxFrame* frame, const GnRay* ray) {
+GN_INLINE GnBoxRay gn_box_ray(GN_GLOBAL const GnBoxFrame* frame, const GnRay* ray) {
   GnBoxRay out;
   gn_f32 origin[3], direction[3], margin = GN_FRAME_MARGIN * frame->size + GN_FRAME_UNDERFLOW;
   gn_u32 k;

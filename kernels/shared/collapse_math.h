@@ -7,12 +7,6 @@
 #include "build_layout.h"
 #include "wide_layout.h"
 
-#ifdef __OPENCL_VERSION__
-#define GN_GLOBAL __global
-#else
-#define GN_GLOBAL
-#endif
-
 // Cost of one node step and of testing one block, in any unit.
 typedef struct GnCollapseCosts {
   gn_f32 node;

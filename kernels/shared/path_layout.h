@@ -5,12 +5,6 @@
 
 #include "build_layout.h"
 
-#ifdef __OPENCL_VERSION__
-#define GN_GLOBAL __global
-#else
-#define GN_GLOBAL
-#endif
-
 // A material: reflectance in [0, 1], emitted radiance, roughness and metalness in [0, 1].
 typedef struct GnSurface {
   gn_f32 base_color[3];

@@ -233,11 +233,12 @@ TEST_CASE("cancelling stops a build with its own error code") {
 }
 
 TEST_CASE("the caller's triangles may change as soon as a build has returned", "[portable]") {
-  const std::vector<GnTriangle> original = gnomon::test::soup(20000, 5);
   for (const auto builder : {gnomon::Builder::kBalanced, gnomon::Builder::kFast, gnomon::Builder::kBest}) {
     CAPTURE(to_string(builder));
     BuildOptions options;
     options.builder = builder;
+    // Devices that end loops optimise only small trees.
+    const auto original = gnomon::test::soup(builder == gnomon::Builder::kBest ? 1000 : 20000, 5);
     std::vector<GnTriangle> triangles = original;
     const auto tree = gnomon::build_device(context(), triangles, options);
     std::fill(triangles.begin(), triangles.end(), GnTriangle{});

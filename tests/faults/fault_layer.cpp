@@ -161,6 +161,9 @@ STATUS_CALL(clEnqueueNDRangeKernel,
              const size_t* global, const size_t* local, cl_uint waits, const cl_event* wait_for,
              cl_event* event),
             (queue, kernel, dimensions, offset, global, local, waits, wait_for, event), COUNT_EVENT(event))
+STATUS_CALL(clEnqueueMarkerWithWaitList,
+            (cl_command_queue queue, cl_uint waits, const cl_event* wait_for, cl_event* event),
+            (queue, waits, wait_for, event), COUNT_EVENT(event))
 STATUS_CALL(clWaitForEvents, (cl_uint count, const cl_event* events), (count, events), {})
 STATUS_CALL(clSetKernelArg, (cl_kernel kernel, cl_uint index, size_t size, const void* value),
             (kernel, index, size, value), {})

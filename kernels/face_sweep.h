@@ -1,8 +1,8 @@
 // The split sweep of a serial group where three face weights measure all: surface area, parallel rays and their mixtures,
 // which most builds are. The same split as gn_sweep_axis on each axis, found without a chain of comparisons from plane to
 // plane: extents of all that is left and right of every plane first, then costs of two planes side by side and their
-// minimum, then the first of the best among the cheapest. Bins are as a serial group leaves them (bin.h): lower corner, upper corner
-// negated. Device only. Feeds sweep.h.
+// minimum, then the first of the best among the cheapest. Bins are as a serial group leaves them (bin.h): lower corner,
+// upper corner negated. Device only. Feeds sweep.h.
 #ifndef GNOMON_FACE_SWEEP_H
 #define GNOMON_FACE_SWEEP_H
 

@@ -1,6 +1,7 @@
 // A device made ready: context, queue, buffers, and where time goes. Not for kernels (program.h, launch.h).
-// Feeds host/device. Users may bring their own context and queue: they are retained, never destroyed, and the
-// queue is never finished; blocking calls wait for their own events only.
+// Feeds host/device. Users may bring their own context and queue: they are retained, never destroyed, and
+// blocking calls wait for their own events only; but who lends memory (share) waits for all that was
+// enqueued.
 #pragma once
 
 #include <cstddef>

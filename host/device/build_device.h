@@ -50,8 +50,9 @@ struct BufferNeed {
 [[nodiscard]] std::vector<BufferNeed> build_memory(const cl::DeviceInfo& device, std::uint64_t triangle_count,
                                                    const BuildOptions& options);
 
-// Builds from host memory. The tree's bytes depend on triangles and options' heuristic values only: not on
-// the device, its work-group size or how the work was cut. Throws Error: kInvalidArgument (options),
+// Builds from host memory, which on CPUs is read where it is: returns, or throws, only once all that was
+// enqueued before is complete. The tree's bytes depend on triangles and options' heuristic values only: not
+// on the device, its work-group size or how the work was cut. Throws Error: kInvalidArgument (options),
 // kBadScene (a coordinate not finite or beyond 2^48; names the triangle), kOutOfMemory (names buffer and
 // size), kDevice, kCancelled.
 [[nodiscard]] DeviceBvh build_device(const cl::Context& context, std::span<const Triangle> triangles,

@@ -115,7 +115,7 @@ bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour) {
 }
 
 bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour) {
-  return has_slots(device, flavour) && flavour != TraceFlavour::kCompact && device.loop_limit == 0;
+  return has_slots(device, flavour) && flavour != TraceFlavour::kCompact;
 }
 
 void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree) {

@@ -2,11 +2,13 @@
 #include "gnomon/tree/merge_leaves.h"
 
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "gnomon/base/error.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/bvh_check.h"
 #include "gnomon/tree/optimise.h"
+#include "gnomon/tree/parts.h"
 #include "gnomon/tree/trace_reference.h"
 #include "support/bundles.h"
 #include "support/shapes.h"
@@ -37,9 +39,13 @@ double cost_of(const Bvh& bvh, const MergeOptions& options) {
   return sum;
 }
 
-std::uint32_t triangles_below(const Bvh& bvh, std::uint32_t node) {
-  if (bvh.nodes[node].count > 0) return bvh.nodes[node].count;
-  return triangles_below(bvh, bvh.nodes[node].first) + triangles_below(bvh, bvh.nodes[node].first + 1);
+// Each once, whether parts of it are in several leaves or not.
+std::set<std::uint32_t> triangles_below(const Bvh& bvh, std::uint32_t node) {
+  const auto& [lo, first, hi, count] = bvh.nodes[node];
+  if (count > 0) return {bvh.primitives.begin() + first, bvh.primitives.begin() + first + count};
+  std::set<std::uint32_t> out = triangles_below(bvh, first);
+  out.merge(triangles_below(bvh, first + 1));
+  return out;
 }
 
 // Of the tree whose inner nodes in `leaves` (a bit a pair) are leaves; infinite where one would be too large.
@@ -48,7 +54,7 @@ double cost_with(const Bvh& bvh, const MergeOptions& options, std::uint32_t node
   const double measure = double{gnomon::face_measures(bvh, kSurface)[node]};
   const bool closed = n.count > 0 || (leaves >> (n.first / 2) & 1U) != 0;
   if (closed) {
-    const std::uint32_t below = triangles_below(bvh, node);
+    const auto below = static_cast<std::uint32_t>(triangles_below(bvh, node).size());
     if (n.count == 0 && below > options.max_leaf_size) return INFINITY;
     return measure * double{options.cost_triangle} * below;
   }
@@ -93,6 +99,38 @@ TEST_CASE("no way to join the leaves of a small tree costs less") {
     }
   }
   REQUIRE(joined > 60);
+}
+
+// Of the tree whose parts are a triangle's or two's: leaves hold each once.
+TEST_CASE("parts of a triangle that meet in a joined leaf are one, and no way to join them costs less") {
+  std::uint32_t joined = 0;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    const auto triangles = gnomon::test::soup(2 + seed % 3, 900 + seed, seed % 2 == 0 ? 6.0F : 12.0F);
+    const Bvh before = gnomon::optimise_reference(
+        gnomon::build_over_primitives(gnomon::parts_of(triangles, 2.0F), triangles, single_leaves()));
+    for (const auto& [most, triangle] : {std::pair{1U, 0.3F}, {2U, 1.2F}, {4U, 3.0F}}) {
+      CAPTURE(seed, most);
+      MergeOptions options;
+      options.max_leaf_size = most;
+      options.cost_triangle = triangle;
+      double least = INFINITY;
+      for (std::uint32_t leaves = 0; leaves < 1U << (before.nodes.size() / 2 + 1); ++leaves)
+        least = std::min(least, cost_with(before, options, 0, leaves));
+      const Bvh after = merge_leaves(before, gnomon::face_measures(before, kSurface), options);
+      REQUIRE(cost_of(after, options) == Approx(least).epsilon(1e-5));
+      std::size_t held = 0;
+      for (const gnomon::Node& node : after.nodes) {
+        std::set<std::uint32_t> own(after.primitives.begin() + node.first,
+                                    after.primitives.begin() + node.first + node.count);
+        REQUIRE(own.size() == node.count);
+        REQUIRE(node.count <= most);
+        held += node.count;
+      }
+      REQUIRE(held == after.primitives.size());
+      joined += after.primitives.size() < before.primitives.size() ? 1 : 0;
+    }
+  }
+  REQUIRE(joined > 40);
 }
 
 TEST_CASE("nodes that stay keep their measures") {

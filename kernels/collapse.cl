@@ -138,7 +138,7 @@ __kernel void weigh_subtrees(__global const GnNode* nodes, __global GnForest* fo
   const GnNodeValues weights = {node_weights, weights_given};
   const uint task = (uint)get_global_id(0);
   const GnCollapseCosts costs = {node_cost, block_cost};
-  if (task >= task_count) return;
+  if (task >= task_count || GN_IDLE_LANE) return;
   GN_CHILDREN_FIRST(nodes, tasks[task], {
     join_children(nodes, forests, node, &weights, costs);
     if (write_keys != 0u) write_keys_below(nodes, triangles, slot_keys, node);
@@ -385,7 +385,7 @@ __kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks,
   const GnTree tree = GN_TREE;
   GnEmission work;
   uint2 ranks;
-  if (index >= task_count) return;
+  if (index >= task_count || GN_IDLE_LANE) return;
   ranks = ranks_of(&tree, tasks[index].root);
   expect_range(nodes + 1u + 2u * ranks.x, (ranks.y - ranks.x) * 2u * sizeof(GnNode));
   expect_range(forests + ranks.x, (ranks.y - ranks.x) * sizeof(GnForest));
@@ -408,7 +408,7 @@ __kernel void emit_subtrees(GN_TREE_PARAMETERS, __global const GnCollapseTask* t
   const GnTree tree = GN_TREE;
   GnEmission work;
   uint2 ranks;
-  if (index >= task_count) return;
+  if (index >= task_count || GN_IDLE_LANE) return;
   ranks = ranks_of(&tree, tasks[index].root);
   expect_range(nodes + 1u + 2u * ranks.x, (ranks.y - ranks.x) * 2u * sizeof(GnNode));
   expect_triangles(&tree, tasks[index].root);

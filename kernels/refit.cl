@@ -61,7 +61,7 @@ static inline void refit_inner(__global GnNode* nodes, uint node, __global const
 __kernel void refit_subtrees(__global GnNode* nodes, __global const GnLeafTriangle* triangles,
                              __global const uint* tasks, uint task_count) {
   const uint task = (uint)get_global_id(0);
-  if (task >= task_count) return;
+  if (task >= task_count || GN_IDLE_LANE) return;
   GN_CHILDREN_FIRST(nodes, tasks[task], refit_inner(nodes, node, triangles))
 }
 

@@ -53,14 +53,14 @@ class Chooser {
     decision_.rays = rays.name;
     decision_.query = rays.query;
     decision_.expected = rays.expected;
-    decision_.kept = "sah";
+    decision_.kept = base();
     decision_.obliquity = pool.obliquity();
   }
 
   Decision run() {
     if (options_.choice == "auto") {
       decide();
-    } else if (options_.choice == "sah") {
+    } else if (options_.choice == base()) {
       decision_.reason = "asked for";
     } else {
       take(options_.choice);
@@ -69,8 +69,10 @@ class Chooser {
   }
 
  private:
+  [[nodiscard]] const std::string& base() const { return pool_.baseline().name; }
+
   void take(const std::string& name) {
-    if (name == "sah-order" && rays_.query != Query::kAny) {
+    if (name.ends_with("-order") && rays_.query != Query::kAny) {
       decision_.reason = "an order of children serves any hit alone";
       return;
     }
@@ -100,8 +102,9 @@ class Chooser {
     limit_probes();
     const double hope = kMostSaved * options_.prices.saved * pool_.expected_cost() * rays_.expected;
     double cheapest = INFINITY;
-    for (const char* const name : {"sah-rays", "sah-order"}) {
-      if (name == std::string("sah-order") && rays_.query != Query::kAny) continue;
+    for (const char* const way : {"-rays", "-order"}) {
+      if (way == std::string("-order") && rays_.query != Query::kAny) continue;
+      const std::string name = base() + way;
       const double price = pool_.likely_price(name);
       cheapest = std::min(cheapest, price);
       if (hope > 2.0 * price && consider(name)) break;
@@ -117,6 +120,7 @@ class Chooser {
   // By totals before anything is made: boxes of axis-parallel walls are fatter in any frame but the world's.
   void consider_frame(double hope) {
     if (!options_.light_space || decision_.obliquity < options_.least_oblique) return;
+    if (base() == "best") return;
     if (!(hope > 2.0 * pool_.likely_price("light-rays"))) return;
     decision_.framed_share = pool_.framed_share();
     const bool every = rays_.query == Query::kEvery;
@@ -143,7 +147,7 @@ class Chooser {
     trial.price =
         candidate.tree.build_units + options_.prices.byte * static_cast<double>(candidate.tree.bytes);
     bool kept = false;
-    if (name == "sah-rays" && trial.fit_gain < options_.race.least_gain) {
+    if (name == base() + "-rays" && trial.fit_gain < options_.race.least_gain) {
       trial.standing.verdict = Verdict::kNotBetter;
       if (decision_.tree == 0)
         decision_.reason = "sampled rays save no more than " + percent(trial.fit_gain) + " of their own cost";
@@ -156,7 +160,7 @@ class Chooser {
       const bool better = trial.standing.verdict == Verdict::kBetter;
       kept = better && trial.saving - trial.price > most_saved_;
       decision_.probes = std::max(decision_.probes, race.rays);
-      if (kept || decision_.kept == "sah") explain(race, trial, better, kept);
+      if (kept || decision_.kept == base()) explain(race, trial, better, kept);
     }
     if (kept) forget_kept();
     if (kept || options_.keep_tried) {
@@ -233,8 +237,9 @@ class Chooser {
 }  // namespace
 
 const std::vector<std::string>& candidate_names() {
-  static const std::vector<std::string> names{"sah", "sah-order", "sah-mix",   "sah-rays",
-                                              "mix", "mix-rays",  "light-mix", "light-rays"};
+  static const std::vector<std::string> names{"sah",      "sah-order",  "sah-mix",   "sah-rays",
+                                              "best",     "best-order", "best-rays", "mix",
+                                              "mix-rays", "light-mix",  "light-rays"};
   return names;
 }
 
@@ -269,8 +274,9 @@ void PlanOptions::check() const {
   require(framed_work >= 1.0 && std::isfinite(framed_work), "framed_work", std::to_string(framed_work),
           "of finite numbers >= 1");
   race.check();
-  for (const double price : {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish,
-                             prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})
+  for (const double price :
+       {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish, prices.divide,
+        prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})
     require(price >= 0.0 && std::isfinite(price), "prices", std::to_string(price), "of finite numbers >= 0");
 }
 

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <memory>
 #include <random>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -18,6 +19,7 @@
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/trace_device.h"
 #include "gnomon/peers/embree_peer.h"
+#include "gnomon/render/picture_tracing.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon/scene/import.h"
 #include "gnomon_bench/settings.h"
@@ -139,26 +141,50 @@ class SceneBench {
   }
 
   std::vector<Ray> rays_of(const std::string& kind) {
+    const std::string_view shuffled = "-shuffled";
+    if (kind.ends_with(shuffled)) {
+      std::vector<Ray> rays = rays_of(kind.substr(0, kind.size() - shuffled.size()));
+      std::mt19937_64 random(settings_.seed);
+      for (std::size_t i = rays.size(); i > 1; --i) std::swap(rays[i - 1], rays[random() % i]);
+      return rays;
+    }
+    lights_ = gnomon::ray_lights_of(scene_);
     if (kind == "primary") return primary_;
     if (kind == "random") return gnomon::random_rays(scene_, settings_.ray_count, settings_.seed);
     if (kind == "shadow")
       return gnomon::shadow_rays(scene_, primary_, hits_, settings_.ray_count, settings_.seed);
-    if (kind == "sun-axis") return sun_rays({0.0F, -1.0F, 0.0F});
-    if (kind == "sun-oblique") return sun_rays({-0.399F, -0.798F, -0.449F});
-    auto rays = gnomon::bounce_rays(scene_, primary_, hits_, settings_.ray_count, settings_.seed);
-    if (kind == "bounce") return rays;
-    std::mt19937_64 random(settings_.seed);
-    for (std::size_t i = rays.size(); i > 1; --i) std::swap(rays[i - 1], rays[random() % i]);
-    return rays;
+    if (kind == "sun-axis") return rays_to(sun_along({0.0F, -1.0F, 0.0F}));
+    if (kind == "sun-oblique") return rays_to(sun_along({-0.399F, -0.798F, -0.449F}));
+    if (kind == "point") return rays_to(some_point());
+    return gnomon::bounce_rays(scene_, primary_, hits_, settings_.ray_count, settings_.seed);
   }
 
-  // Shadow rays from the hits of primary rays, as if a sun were the scene's only light.
-  std::vector<Ray> sun_rays(const gnomon::Vec3& direction) {
+  static gnomon::Light sun_along(const gnomon::Vec3& direction) {
     gnomon::Light sun;
     sun.kind = gnomon::LightKind::kDirectional;
     sun.direction = direction;
-    auto lights = std::exchange(scene_.lights, {sun});
+    return sun;
+  }
+
+  // The scene's first point light, without its range, or one above the middle.
+  gnomon::Light some_point() const {
+    for (gnomon::Light light : scene_.lights) {
+      if (light.kind != gnomon::LightKind::kPoint) continue;
+      light.range = 0.0F;
+      return light;
+    }
+    const gnomon::Bounds box = gnomon::bounds_of(scene_);
+    gnomon::Light light;
+    light.position = {0.5F * (box.lo[0] + box.hi[0]), box.hi[1] + 0.1F * (box.hi[0] - box.lo[0]),
+                      0.5F * (box.lo[2] + box.hi[2])};
+    return light;
+  }
+
+  // Shadow rays from the hits of primary rays, as if this were the scene's only light.
+  std::vector<Ray> rays_to(const gnomon::Light& light) {
+    auto lights = std::exchange(scene_.lights, {light});
     auto rays = gnomon::shadow_rays(scene_, primary_, hits_, settings_.ray_count, settings_.seed);
+    lights_ = gnomon::ray_lights_of(scene_);
     scene_.lights = std::move(lights);
     return rays;
   }
@@ -166,7 +192,7 @@ class SceneBench {
   void trace_rows(const std::string& kind, const std::vector<const EmbreeScene*>& peers) {
     const std::vector<Ray> rays = rays_of(kind);
     if (rays.empty()) return;
-    const bool any = kind == "shadow" || kind.starts_with("sun");
+    const bool any = kind.starts_with("shadow") || kind.starts_with("sun") || kind.starts_with("point");
     const auto count = static_cast<std::uint32_t>(rays.size());
     const auto ray_buffer = context_.create_buffer("rays", rays.size() * sizeof(Ray));
     const auto answers = context_.create_buffer("answers", rays.size() * sizeof(Hit));
@@ -203,7 +229,8 @@ class SceneBench {
     gnomon::TraceOptions options;
     options.counters = counters;
     options.portable = flavour.starts_with("portable");
-    options.sort_rays = flavour == "sorted";
+    options.sort_rays = flavour.ends_with("sorted");
+    if (flavour == "light-sorted") options.lights = lights_;
     options.flavour = flavour.ends_with("packet") || options.sort_rays ? gnomon::TraceFlavour::kPacket
                                                                        : gnomon::TraceFlavour::kWide;
     if (flavour == "compact") options.flavour = gnomon::TraceFlavour::kCompact;
@@ -268,6 +295,7 @@ class SceneBench {
   gnomon::BuildReport report_;
   std::vector<Ray> primary_;
   std::vector<Hit> hits_;
+  std::vector<gnomon::RayLight> lights_;  // that the rays made last go to
   json common_;
 };
 

@@ -16,7 +16,7 @@ set(public_headers
   cl/opencl.h cl/check.h cl/handle.h cl/device.h cl/context.h cl/launch.h
   device/build_device.h device/collapse_device.h device/optimise_device.h device/compact_device.h device/trace_device.h
   device/forest.h device/find_areas.h device/trace_areas.h
-  render/picture.h render/path_options.h render/path_tracer.h render/ray_recorder.h render/render.h render/heat_map.h render/png.h)
+  render/picture.h render/path_options.h render/path_tracer.h render/picture_tracing.h render/ray_recorder.h render/render.h render/heat_map.h render/png.h)
 set(header_folder ${CMAKE_INSTALL_INCLUDEDIR}/gnomon)
 install(FILES gnomon.h DESTINATION ${header_folder})
 foreach(header ${public_headers})

@@ -11,12 +11,18 @@ void add_options(CLI::App& program, Settings& s) {
       ->capture_default_str();
   program.add_option("--rays", s.rays, "which kinds, by commas; none: builds only")
       ->delimiter(',')
-      ->check(CLI::IsMember(
-          {"primary", "bounce", "bounce-shuffled", "shadow", "sun-axis", "sun-oblique", "random", "none"}))
+      ->check(CLI::IsMember({"primary", "bounce", "bounce-shuffled", "shadow", "shadow-shuffled", "sun-axis",
+                             "sun-axis-shuffled", "sun-oblique", "sun-oblique-shuffled", "point",
+                             "point-shuffled", "random", "none"}))
       ->capture_default_str();
-  program.add_option("--flavours", s.flavours, "of our tracer, by commas; sorted: packet, rays sorted first")
+  program
+      .add_option("--flavours", s.flavours,
+                  "of our tracer, by commas; sorted: packet, rays sorted first; light-sorted: by the lights "
+                  "that they "
+                  "go to")
       ->delimiter(',')
-      ->check(CLI::IsMember({"packet", "wide", "portable", "portable-packet", "thread", "sorted", "compact"}))
+      ->check(CLI::IsMember(
+          {"packet", "wide", "portable", "portable-packet", "thread", "sorted", "light-sorted", "compact"}))
       ->capture_default_str();
   program
       .add_option("--builders", s.builders,

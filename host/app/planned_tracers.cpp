@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "gnomon/render/picture_tracing.h"
+
 namespace gnomon::app {
 
 PlannedTracers::PlannedTracers(const cl::Context& context, const Scene& scene, const TimedBuild& plain,
@@ -16,20 +18,21 @@ PlannedTracers::PlannedTracers(const cl::Context& context, const Scene& scene, c
 PlannedTracers::Ready PlannedTracers::ready(const cl::Context& context, const Scene& scene,
                                             const PlanTree* kept) const {
   Ready out;
+  const TraceOptions how = picture_tracing(context.device(), scene);
   if (kept == nullptr) {
-    out.tracer = std::make_unique<Tracer>(context, plain_.tree);
+    out.tracer = std::make_unique<Tracer>(context, plain_.tree, how);
     return out;
   }
   out.own = std::make_unique<DeviceBvh>(upload_bvh(context, kept->tree.bvh, scene.triangles));
   // The binary tree has no slots for an order to be of, and is not collapsed.
   if ((kept->tree.ranks.empty() && kept->tree.weights.empty()) ||
       !has_slots(context.device(), TraceFlavour::kAuto)) {
-    out.tracer = std::make_unique<Tracer>(context, *out.own);
+    out.tracer = std::make_unique<Tracer>(context, *out.own, how);
     return out;
   }
   out.wide = std::make_unique<DeviceWideBvh>(
       collapse_device(context, *out.own, {}, nullptr, kept->tree.ranks, kept->tree.weights));
-  out.tracer = std::make_unique<Tracer>(context, *out.wide);
+  out.tracer = std::make_unique<Tracer>(context, *out.wide, how);
   return out;
 }
 

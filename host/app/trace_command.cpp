@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "device_choice.h"
 #include "document.h"
+#include "gnomon/render/picture_tracing.h"
 #include "heuristic_options.h"
 #include "interrupt.h"
 #include "numbers.h"
@@ -31,6 +32,7 @@ struct Options {
   std::string flavour = "auto";
   std::string accuracy = "watertight";
   bool sort = false;
+  std::string order = "given";
   std::uint64_t repeat = 5;
   RayFileOptions rays_in;
   std::string rays_out, hits_out;
@@ -44,11 +46,12 @@ TraceFlavour flavour_from(const std::string& name) {
   return TraceFlavour::kAuto;
 }
 
-TraceOptions how_to_trace(const Options& options) {
+TraceOptions how_to_trace(const Options& options, const Scene& scene) {
   TraceOptions how;
   how.flavour = flavour_from(options.flavour);
   how.accuracy = options.accuracy == "fast" ? Accuracy::kFast : Accuracy::kWatertight;
-  how.sort_rays = options.sort;
+  how.sort_rays = options.order != "given";
+  if (options.order == "light") how.lights = ray_lights_of(scene);
   return how;
 }
 
@@ -95,7 +98,8 @@ void add_trace(Json& document, const Options& options, const TimedTrace& trace, 
   chosen["repeat"] = options.repeat;
   chosen["flavour"] = options.flavour;
   chosen["accuracy"] = options.accuracy;
-  chosen["sort"] = options.sort;
+  chosen["sort"] = options.order != "given";
+  chosen["order"] = options.order;
   document["flavour"] = to_string(trace.flavour);
   document["cost_of_fast"] = trace.cost ? cost_of_fast(*trace.cost) : Json(nullptr);
   document["rays"] = rays;
@@ -130,7 +134,8 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
                          std::to_string(trace.mrays_per_s.count) + ", " + fixed(trace.mrays_per_s.min, 3) +
                          " to " + fixed(trace.mrays_per_s.max, 3) + "; " +
                          (trace.device_clock ? "device time)" : "wall clock, transfers included)"));
-  facts.add("flavour", std::string(to_string(trace.flavour)) + (options.sort ? ", rays sorted first" : ""));
+  facts.add("flavour", std::string(to_string(trace.flavour)) +
+                           (options.order == "given" ? "" : ", rays sorted first, by " + options.order));
   if (trace.cost) {
     facts.add("fast costs",
               std::to_string(trace.cost->lost) + " hits lost, " + std::to_string(trace.cost->added) +
@@ -182,7 +187,7 @@ PlanTask plan_task(const Options& options, const cl::Context& context, const Sce
           counted,
           draw,
           TreesWanted::kOneEach,
-          takes_frames(context.device(), how_to_trace(options).flavour)};
+          takes_frames(context.device(), flavour_from(options.flavour))};
 }
 
 int run(const Options& options, Console& console) {
@@ -204,12 +209,12 @@ int run(const Options& options, Console& console) {
   std::span<const float> weights;
   if (const PlanTree* const kept = planned.tree(0)) {
     adopt(build, task, *kept);
-    if (has_slots(context.device(), how_to_trace(options).flavour)) {
+    if (has_slots(context.device(), flavour_from(options.flavour))) {
       ranks = kept->tree.ranks;
       weights = kept->tree.weights;
     }
   }
-  const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, how_to_trace(options),
+  const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, how_to_trace(options, scene),
                                        options.repeat, console.progress(), ranks, weights);
   stop_if_interrupted();
   if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
@@ -286,9 +291,17 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
       ->check(CLI::IsMember({"watertight", "fast"}))
       ->type_name("A")
       ->capture_default_str();
-  command->add_flag("--sort", options->sort,
-                    "sort rays by where they start before tracing them, inside the time; hits stay in their "
-                    "order. Pays for rays in no order, such as bounces from all over the picture");
+  CLI::Option* const order =
+      command
+          ->add_option("--order", options->order,
+                       "sort rays before tracing them, inside the time; hits stay in their order. origin: by "
+                       "where they start, which pays for rays in no order, such as bounces from all over the "
+                       "picture. light: for any hit, by which of the scene's points and suns they go to, and "
+                       "where to neighbours run, so that packets can take them; for closest hits as origin")
+          ->check(CLI::IsMember({"given", "origin", "light"}))
+          ->type_name("O")
+          ->capture_default_str();
+  command->add_flag("--sort", options->sort, "as --order origin")->excludes(order);
   add_count(*command, "--repeat", options->repeat, "timed passes, after one to warm up")
       ->check(CLI::Range(1, 10000));
   add_build_options(*command, options->build);
@@ -306,6 +319,7 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
                   "  gnomon trace model.glb --rays-in rays.gnr --kinds shadow");
   command->callback([&action, options, command] {
     settle(*command, options->plan);
+    if (options->sort) options->order = "origin";
     action = [options](Console& console) { return run(*options, console); };
   });
 }

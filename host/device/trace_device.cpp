@@ -57,13 +57,14 @@ GnBounds box_of(const CompactNode& root) {
 template <typename Node>
 std::unique_ptr<RaySort> sort_in(const cl::Context& context, const cl::Buffer& nodes,
                                  const TraceOptions& options, const std::optional<BoxFrame>& frame = {}) {
-  if (!options.sort_rays) return nullptr;
+  if (!options.sort_rays && options.lights.empty()) return nullptr;
   if (frame) {  // rays begin where triangles are, not where boxes stand
     const float size = frame->size;
-    return std::make_unique<RaySort>(context,
-                                     GnBounds{{-size, -size, -size}, 0.0F, {size, size, size}, 0.0F});
+    return std::make_unique<RaySort>(context, GnBounds{{-size, -size, -size}, 0.0F, {size, size, size}, 0.0F},
+                                     options.lights);
   }
-  return std::make_unique<RaySort>(context, box_of(context.download_values<Node>(nodes, 1).front()));
+  return std::make_unique<RaySort>(context, box_of(context.download_values<Node>(nodes, 1).front()),
+                                   options.lights);
 }
 
 }  // namespace
@@ -89,7 +90,9 @@ const char* to_string(Accuracy accuracy) {
 }
 
 Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOptions& options)
-    : context_(context), flavour_(flavour_for(context.device(), options, tree.frame.has_value())) {
+    : context_(context),
+      flavour_(flavour_for(context.device(), options, tree.frame.has_value())),
+      sorts_closest_(options.sort_rays) {
   if (flavour_ != TraceFlavour::kThread && !collapse(tree, options)) flavour_ = TraceFlavour::kThread;
   if (flavour_ == TraceFlavour::kThread) {
     trace_binary(tree, options);
@@ -104,7 +107,8 @@ Tracer::Tracer(const cl::Context& context, const DeviceBvh& tree, const TraceOpt
 
 Tracer::Tracer(const cl::Context& context, const DeviceWideBvh& tree, const TraceOptions& options)
     : context_(context),
-      flavour_(options.flavour == TraceFlavour::kAuto ? TraceFlavour::kPacket : options.flavour) {
+      flavour_(options.flavour == TraceFlavour::kAuto ? TraceFlavour::kPacket : options.flavour),
+      sorts_closest_(options.sort_rays) {
   if (options.flavour == TraceFlavour::kThread) {
     throw Error(
         ErrorCode::kInvalidArgument,
@@ -119,7 +123,7 @@ Tracer::Tracer(const cl::Context& context, const DeviceWideBvh& tree, const Trac
 }
 
 Tracer::Tracer(const cl::Context& context, const DeviceCompactBvh& tree, const TraceOptions& options)
-    : context_(context), flavour_(TraceFlavour::kCompact) {
+    : context_(context), flavour_(TraceFlavour::kCompact), sorts_closest_(options.sort_rays) {
   if (options.flavour != TraceFlavour::kAuto && options.flavour != TraceFlavour::kCompact) {
     throw Error(ErrorCode::kInvalidArgument, std::string("the ") + to_string(options.flavour) +
                                                  " flavour does not trace compact trees; give it the tree "
@@ -207,14 +211,19 @@ cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, const 
   return cl::enqueue(context_.queue(), kernel.get(), global, local, wait_for);
 }
 
+RaySort* Tracer::sort_for(std::size_t answer_bytes) const {
+  return answer_bytes == sizeof(Hit) && !sorts_closest_ ? nullptr : sort_.get();
+}
+
 cl::Handle<cl_event> Tracer::enqueue_batch(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                            std::size_t answer_bytes,
                                            std::span<const cl_event> wait_for) const {
-  if (sort_ == nullptr) return enqueue_passes(context_, *plan_, launch, wait_for, enqueuer(kernel));
+  RaySort* const sort = sort_for(answer_bytes);
+  if (sort == nullptr) return enqueue_passes(context_, *plan_, launch, wait_for, enqueuer(kernel));
   cl::StageTimes times;
-  const Launch sorted = sort_->begin(launch, answer_bytes, false, wait_for, times);
+  const Launch sorted = sort->begin(launch, answer_bytes, false, wait_for, times);
   const auto traced = enqueue_passes(context_, *plan_, sorted, {}, enqueuer(kernel));
-  return sort_->end(launch, answer_bytes, false, times);
+  return sort->end(launch, answer_bytes, false, times);
 }
 
 cl::Handle<cl_event> Tracer::enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
@@ -234,7 +243,7 @@ TraceResult Tracer::trace_all(const cl::Handle<cl_kernel>& kernel, std::span<con
   TraceResult result;
   const std::uint64_t invalid_before = invalid_rays();
   result.kernel_ms = trace_in_batches(context_, *plan_, rays, result.*answers, result.counters,
-                                      enqueuer(kernel), progress, sort_.get());
+                                      enqueuer(kernel), progress, sort_for(sizeof(Answer)));
   result.invalid_rays = invalid_rays() - invalid_before;
   return result;
 }

@@ -3,6 +3,7 @@
 // caller's buffers (only enqueues, returns an event).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -40,6 +41,12 @@ enum class Accuracy : std::uint32_t {
 };
 [[nodiscard]] const char* to_string(Accuracy accuracy);
 
+// What many rays go to or come from: a point, or a sun, whose rays are parallel.
+struct RayLight {
+  bool is_sun = false;
+  std::array<float, 3> place{};  // the point; of a sun the way its rays go, in either sense
+};
+
 struct TraceOptions {
   TraceFlavour flavour = TraceFlavour::kAuto;
   Accuracy accuracy = Accuracy::kWatertight;
@@ -50,6 +57,10 @@ struct TraceOptions {
   // Trace each batch in the order of its rays' origins along a curve through the scene: pays where rays that
   // follow each other start far apart. Answers stay in the caller's order, and are the same bits.
   bool sort_rays = false;
+  // Up to 31 whose shadow rays are to be traced together: any-hit batches go light by light, neighbours one
+  // after another, so that packets can take them, and rays of none of these last. For rays in no order, or
+  // mixed; nobody needs to say which ray is whose.
+  std::vector<RayLight> lights;
   std::uint32_t work_group_size = 64;  // power of two up to the device's limit
   // A ray's nodes and triangles per launch; rays that need more go on in another launch. 0: all in one,
   // unless the device ends long loops (DeviceInfo::loop_limit). For devices that stop kernels which run for
@@ -115,6 +126,7 @@ class Tracer {
                                              const Passes& passes, std::uint32_t pass,
                                              std::span<const cl_event> wait_for) const;
   [[nodiscard]] EnqueuePass enqueuer(const cl::Handle<cl_kernel>& kernel) const;
+  [[nodiscard]] RaySort* sort_for(std::size_t answer_bytes) const;
   [[nodiscard]] cl::Handle<cl_event> enqueue_batch(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                                    std::size_t answer_bytes,
                                                    std::span<const cl_event> wait_for) const;
@@ -132,6 +144,7 @@ class Tracer {
   cl_mem vertices_ = nullptr;  // of a compact tree
   std::unique_ptr<TracePlan> plan_;
   std::unique_ptr<RaySort> sort_;  // when rays are to be sorted
+  bool sorts_closest_;             // those of closest hits, too
   cl::Handle<cl_kernel> closest_;
   cl::Handle<cl_kernel> any_;
   cl::Buffer invalid_;

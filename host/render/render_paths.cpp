@@ -1,5 +1,6 @@
 #include <optional>
 
+#include "gnomon/render/picture_tracing.h"
 #include "gnomon/render/render.h"
 
 namespace gnomon {
@@ -19,7 +20,7 @@ RenderResult render_paths(const cl::Context& context, const DeviceBvh& tree, con
                           const RenderOptions& options, const Progress& progress,
                           const RayObserver& observer) {
   options.check();
-  const Tracer tracer(context, tree);
+  const Tracer tracer(context, tree, picture_tracing(context.device(), scene));
   return render_paths(context, {tracer, tracer}, tree, scene, options, progress, observer);
 }
 

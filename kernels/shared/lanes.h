@@ -23,6 +23,7 @@ typedef int4 gn_lane_mask;
 #define GN_ALL_BITS(x) ((uint4)(x))
 GN_INLINE gn_lane_bits gn_bits_of_lanes(gn_lanes x) { return as_uint4(x); }
 GN_INLINE gn_lanes gn_lanes_of_bits(gn_lane_bits x) { return as_float4(x); }
+GN_INLINE gn_lane_bits gn_whole_lanes(gn_lanes x) { return convert_uint4(x); }  // of 0 and more
 GN_INLINE gn_f32 gn_first_lane(gn_lanes x) { return x.x; }
 GN_INLINE int gn_any_lane(gn_lane_mask mask) {
   return any(mask);
@@ -37,6 +38,7 @@ typedef int gn_lane_mask;
 #define GN_ALL_BITS(x) (x)
 GN_INLINE gn_lane_bits gn_bits_of_lanes(gn_lanes x) { return gn_bits_of(x); }
 GN_INLINE gn_lanes gn_lanes_of_bits(gn_lane_bits x) { return gn_float_of(x); }
+GN_INLINE gn_lane_bits gn_whole_lanes(gn_lanes x) { return (gn_u32)x; }
 GN_INLINE gn_f32 gn_first_lane(gn_lanes x) { return x; }
 GN_INLINE int gn_any_lane(gn_lane_mask mask) {
   return mask;

@@ -118,6 +118,36 @@ TEST_CASE("every kind of rays can be made, by default for the query it is for") 
   }
 }
 
+TEST_CASE("rays may be sorted before they are traced, by origins or by lights: hits stay in their places") {
+  const Folder folder;
+  const auto trace = [&](const std::vector<std::string>& how) {
+    std::vector<std::string> words{"trace", "gen:cottage:8k", "--rays", "shadow", "--count",
+                                   "3k",    "--repeat",       "1",      "--json"};
+    words.insert(words.end(), how.begin(), how.end());
+    const auto outcome = run(words);
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.status == 0);
+    return json::parse(outcome.out);
+  };
+  const json given = trace({});
+  CHECK(given.at("options").at("order") == "given");
+  CHECK(given.at("options").at("sort") == false);
+  for (const std::string order : {"origin", "light"}) {
+    CAPTURE(order);
+    const json sorted = trace({"--order", order});
+    CHECK(sorted.at("options").at("order") == order);
+    CHECK(sorted.at("options").at("sort") == true);
+    CHECK(sorted.at("hits") == given.at("hits"));
+    trace({"--order", order, "--query", "closest", "--hits-out", folder.file(order)});
+  }
+  trace({"--query", "closest", "--hits-out", folder.file("given")});
+  CHECK(program::read_text(folder.file("light")) == program::read_text(folder.file("given")));
+  CHECK(program::read_text(folder.file("origin")) == program::read_text(folder.file("given")));
+  CHECK(trace({"--sort"}).at("options").at("order") == "origin");
+  CHECK(run({"trace", "gen:random:100", "--sort", "--order", "light"}).status == 2);
+  CHECK(run({"trace", "gen:random:100", "--order", "colour"}).status == 2);
+}
+
 TEST_CASE("a batch without rays is traced without fuss") {
   const auto outcome = run({"trace", "gen:random:100", "--count", "0", "--json"});
   REQUIRE(outcome.status == 0);

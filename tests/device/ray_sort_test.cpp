@@ -1,10 +1,12 @@
 // Rays traced in an order of their own: that order, and the same answers in the caller's.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstring>
 
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/ray_batches.h"
+#include "gnomon/shared/light_key.h"
 #include "gnomon/shared/ray_key.h"
 #include "support/flavours.h"
 
@@ -23,15 +25,46 @@ std::uint32_t key_of(const GnBounds& bounds, const GnRay& ray) {
   return gn_ray_key(bounds.lo, scale, ray.origin, ray.direction);
 }
 
+std::uint32_t light_key_of(const std::vector<RayLight>& lights, const GnBounds& bounds, const GnRay& ray) {
+  std::vector<GnRayLight> packed;
+  for (const auto& [sun, place] : lights) packed.push_back({{place[0], place[1], place[2]}, sun ? 1U : 0U});
+  const float scale = gn_bin_scale(0.0F, bounds.hi[0] - bounds.lo[0], GN_PLACE_CELLS);
+  const auto count = static_cast<std::uint32_t>(packed.size());
+  return gn_light_keys(packed.data(), count, bounds.lo, scale, ray.origin, ray.direction);
+}
+
+const std::vector<RayLight> kLights{
+    {false, {3.0F, 9.0F, 4.0F}}, {true, {-0.4F, -0.8F, -0.45F}}, {false, {-2.0F, 5.0F, 5.0F}}};
+
+// From random places to these lights, the sun's from both ends, and some to none of them; in no order.
+Rays shadow_rays_in_no_order(std::uint32_t count, std::uint32_t seed) {
+  Rays rays = test::random_rays(count, seed);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (i % 4 == 3) continue;
+    const auto& [sun, place] = kLights[i % 4];
+    for (std::size_t k = 0; k < 3; ++k)
+      rays[i].direction[k] = sun ? (i % 8 == 1 ? 2.0F : -1.0F) * place[k] : place[k] - rays[i].origin[k];
+    rays[i].tmax = sun ? INFINITY : 0.9999F;
+  }
+  return rays;
+}
+
+TraceOptions lit(TraceFlavour flavour) {
+  TraceOptions options;
+  options.flavour = flavour;
+  options.lights = kLights;
+  return options;
+}
+
 // As they are handed to a tracer.
-Rays sorted_on_device(const Rays& rays, const GnBounds& bounds) {
-  RaySort sort(context(), bounds);
+Rays sorted_on_device(const Rays& rays, const GnBounds& bounds, const std::vector<RayLight>& lights = {}) {
+  RaySort sort(context(), bounds, lights);
   const auto count = static_cast<std::uint32_t>(rays.size());
   const auto buffer = context().create_buffer("rays", rays.size() * sizeof(GnRay));
   context().upload_values<GnRay>(buffer, rays);
   cl::StageTimes times;
-  const Launch sorted =
-      sort.begin({buffer.mem.get(), nullptr, nullptr, count}, sizeof(GnHit), false, {}, times);
+  const Launch sorted = sort.begin({buffer.mem.get(), nullptr, nullptr, count},
+                                   lights.empty() ? sizeof(GnHit) : 4, false, {}, times);
   REQUIRE(sorted.count == count);
   Rays got(rays.size());
   REQUIRE(clEnqueueReadBuffer(context().queue(), sorted.rays, CL_TRUE, 0, got.size() * sizeof(GnRay),
@@ -170,4 +203,114 @@ TEST_CASE("sorting in a scene without triangles is no matter") {
   const Rays rays = test::random_rays(20, 45);
   for (const GnHit& hit : Tracer(context(), tree, sorting(TraceFlavour::kAuto)).closest(rays).hits)
     REQUIRE(hit.primitive == GN_NONE);
+}
+
+TEST_CASE("by lights a ray's key is its light and its place among that light's rays") {
+  const GnBounds bounds = cube(0.0F, 128.0F);
+  const std::vector<RayLight> lights{{true, {0, -1, 0}}, {false, {10, 20, 30}}};
+  const auto key = [&](float x, float y, float z, float dx, float dy, float dz) {
+    return light_key_of(lights, bounds, {{x, y, z}, 0, {dx, dy, dz}, 1});
+  };
+  // Along the sun's way, either way: the origin's cell.
+  REQUIRE(key(0, 0, 0, 0, 3, 0) == 0);
+  REQUIRE(key(0, 0, 0, 0, -1, 0) == 0);
+  REQUIRE(key(1.5F, 0, 0, 0, 1, 0) == 4);
+  REQUIRE(key(0, 1.5F, 0, 0, 1, 0) == 2);
+  REQUIRE(key(0, 0, 2.5F, 0, 1, 0) == 8);
+  REQUIRE(key(500, 127.5F, 1e30F, 0, 1, 0) == (1U << 21U) - 1);
+  // Through the point: largest axis, octant, cell of what the others are to it.
+  const std::uint32_t point = 1U << GN_LIGHT_PLACE_BITS;
+  REQUIRE(key(0, 20, 30, 1, 0, 0) == point);
+  REQUIRE(key(20, 20, 30, -1, 0, 0) == (point | 4U << 16U));
+  REQUIRE(key(8, 0, 30, 0.5F, 5, 0) == (point | 1U << 19U | 321U));           // the 25th of 256
+  REQUIRE(key(9.4F, 20, 20, 0.15F, 0, 2.5F) == (point | 2U << 19U | 0xaaU));  // the 15th
+  REQUIRE(key(0, 10, 20, 1, 1, 1) == (point | 0xffffU));
+  // Of neither, however near: by origins, after all lights.
+  const std::uint32_t none = GN_MOST_RAY_LIGHTS << GN_LIGHT_PLACE_BITS;
+  REQUIRE(key(0, 0, 0, 0.01F, 1, 0) == none);
+  REQUIRE(key(1.5F, 20, 30, 1, 0.01F, 0) ==
+          (none | light_key_of({{true, {1, 0, 0}}}, bounds, {{1.5F, 20, 30}, 0, {1, 0, 0}, 1})));
+  REQUIRE(key(NAN, 0, 0, NAN, 1, 0) == none);
+  REQUIRE(key(NAN, NAN, NAN, 0, 1, 0) == 0);
+}
+
+TEST_CASE("rays go to the tracer light by light, those of a key in the batch's order", "[portable]") {
+  const GnBounds bounds = cube(0.0F, 10.0F);
+  for (const std::uint32_t count : {1U, 2U, 1003U, 70'001U}) {
+    if (count > 2000 && context().device().loop_limit != 0) continue;
+    CAPTURE(count);
+    Rays rays = shadow_rays_in_no_order(count, 51);
+    for (std::uint32_t i = 0; i < count; ++i) rays[i].tmin = static_cast<float>(i);
+    if (count > 1000) rays[7].origin[0] = rays[9].direction[1] = NAN;
+    Rays expected = rays;
+    std::stable_sort(expected.begin(), expected.end(), [&](const GnRay& a, const GnRay& b) {
+      return light_key_of(kLights, bounds, a) < light_key_of(kLights, bounds, b);
+    });
+    const Rays got = sorted_on_device(rays, bounds, kLights);
+    std::array<int, GN_MOST_RAY_LIGHTS + 1> rays_of_light{};
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      CAPTURE(i, got[i].tmin, expected[i].tmin);
+      REQUIRE(std::memcmp(&got[i], &expected[i], sizeof(GnRay)) == 0);
+      ++rays_of_light[light_key_of(kLights, bounds, got[i]) >> GN_LIGHT_PLACE_BITS];
+    }
+    if (count < 1000) continue;
+    for (const std::size_t light : {0U, 1U, 2U, GN_MOST_RAY_LIGHTS})
+      REQUIRE(rays_of_light[light] > static_cast<int>(count / 4) - 10);
+  }
+}
+
+TEST_CASE("rays sorted by lights get the answers they get unsorted, in their places, however they are traced",
+          "[portable][memcheck]") {
+  const auto triangles = test::soup(150, 41);
+  const auto tree = build_device(context(), triangles);
+  Rays rays = shadow_rays_in_no_order(203, 52);
+  rays[5].direction[0] = NAN;
+  rays[9].origin[1] = INFINITY;
+  const auto plain = test::trace(tree, rays, TraceFlavour::kThread);
+  for (const TraceFlavour flavour : {TraceFlavour::kAuto, TraceFlavour::kThread}) {
+    CAPTURE(to_string(flavour));
+    const Tracer tracer(context(), tree, lit(flavour));
+    const auto any = tracer.any(rays);
+    REQUIRE(any.occluded == plain.any.occluded);
+    REQUIRE(any.invalid_rays == 2);
+    require_equal(tracer.closest(rays).hits, plain.closest.hits);
+  }
+}
+
+TEST_CASE("rays that make no packets in the batch's order make them light by light", "[unlimited]") {
+  const auto tree = build_device(context(), test::soup(700, 53));
+  Rays rays = shadow_rays_in_no_order(40'000, 54);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i].tmin = 0.0F;
+    for (float& x : rays[i].direction) x = i % 8 == 1 ? -x : x;  // all towards the sun
+  }
+  const auto work = [&](TraceFlavour flavour, const std::vector<RayLight>& lights) {
+    TraceOptions counting;
+    counting.flavour = flavour;
+    counting.lights = lights;
+    counting.counters = true;
+    return Tracer(context(), tree, counting).any(rays).counters;
+  };
+  // Rays that no packet takes do what they do in the wide flavour.
+  const auto singly = work(TraceFlavour::kWide, {});
+  const auto in_packets = [&](const std::vector<RayLight>& lights) {
+    const auto counters = work(TraceFlavour::kPacket, lights);
+    std::size_t rays_of_packets = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (i % 4 != 3 && counters[i].boxes != singly[i].boxes) ++rays_of_packets;
+    }
+    return rays_of_packets;
+  };
+  REQUIRE(in_packets({}) == 0);
+  REQUIRE(in_packets(kLights) > rays.size() * 3 / 8);  // of three quarters that go to lights
+}
+
+TEST_CASE("rays are sorted by up to 31 lights, or refused") {
+  const auto tree = build_device(context(), test::soup(20, 55));
+  TraceOptions options;
+  options.lights.resize(GN_MOST_RAY_LIGHTS);
+  const Rays rays = test::random_rays(20, 56);
+  REQUIRE(Tracer(context(), tree, options).any(rays).occluded == Tracer(context(), tree).any(rays).occluded);
+  options.lights.emplace_back();
+  REQUIRE_THROWS_WITH((Tracer(context(), tree, options)), Catch::Contains("up to 31 lights, not by 32"));
 }

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "gnomon/render/path_reference.h"
+#include "gnomon/render/picture_tracing.h"
 #include "gnomon/tree/build_reference.h"
 #include "render/path_checks.h"
 
@@ -123,18 +124,45 @@ TEST_CASE("a picture depends neither on batches, work-groups and calls nor on th
   for (const std::uint32_t samples : {1U, 0U, 3U, 1U}) in_parts.add_samples(samples);
   REQUIRE(in_parts.samples() == 5);
   require_same(in_parts.film(), expected);
-  for (const TraceFlavour flavour : {TraceFlavour::kThread, TraceFlavour::kWide, TraceFlavour::kCompact}) {
+  for (const TraceFlavour flavour :
+       {TraceFlavour::kThread, TraceFlavour::kWide, TraceFlavour::kCompact, TraceFlavour::kPacket}) {
     for (const bool sorted : {false, true}) {
       CAPTURE(to_string(flavour), sorted);
       TraceOptions options;
       options.flavour = flavour;
       options.sort_rays = sorted;
+      if (sorted || flavour == TraceFlavour::kPacket) options.lights = ray_lights_of(scene);
       require_same(film_of(TracedScene(scene, options), odd_picture(), 5), expected);
     }
   }
   PathOptions other = odd_picture();
   other.seed = 78;
   REQUIRE(film_of(traced, other, 5) != expected);
+}
+
+TEST_CASE("rays are sorted by points, spots and suns, and by the sun of a scene without lights") {
+  Scene scene = furnished();
+  std::size_t wanted = 0;
+  for (const Light& light : scene.lights) wanted += light.kind == LightKind::kArea ? 0 : 1;
+  REQUIRE(wanted < scene.lights.size());
+  const std::vector<RayLight> lights = ray_lights_of(scene);
+  REQUIRE(lights.size() == wanted);
+  std::size_t next = 0;
+  for (const Light& light : scene.lights) {
+    if (light.kind == LightKind::kArea) continue;
+    CAPTURE(light.name);
+    REQUIRE(lights[next].is_sun == (light.kind == LightKind::kDirectional));
+    REQUIRE(lights[next].place == (lights[next].is_sun ? light.direction : light.position));
+    ++next;
+  }
+  const cl::DeviceInfo& device = context().device();
+  REQUIRE(picture_tracing(device, scene).lights.size() ==
+          (device.is_cpu && device.loop_limit == 0 ? wanted : 0));
+  scene.lights = std::vector<Light>(100);
+  REQUIRE(ray_lights_of(scene).size() == 31);
+  scene.lights.clear();
+  REQUIRE(ray_lights_of(scene).size() == 1);
+  REQUIRE(ray_lights_of(scene).front().is_sun);
 }
 
 TEST_CASE("observers see every ray once, with the path it belongs to and the light it asks", "[portable]") {

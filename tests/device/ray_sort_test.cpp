@@ -225,6 +225,9 @@ TEST_CASE("by lights a ray's key is its light and its place among that light's r
   REQUIRE(key(8, 0, 30, 0.5F, 5, 0) == (point | 1U << 19U | 321U));           // the 25th of 256
   REQUIRE(key(9.4F, 20, 20, 0.15F, 0, 2.5F) == (point | 2U << 19U | 0xaaU));  // the 15th
   REQUIRE(key(0, 10, 20, 1, 1, 1) == (point | 0xffffU));
+  // Of two lights that it goes with, the first's.
+  const std::vector<RayLight> twice{{false, {0, 0, 5}}, {false, {0, 0, 5}}, {true, {0, 0, 1}}};
+  REQUIRE(light_key_of(twice, bounds, {{0, 0, 1}, 0, {0, 0, 1}, 1}) == 2U << 19U);
   // Of neither, however near: by origins, after all lights.
   const std::uint32_t none = GN_MOST_RAY_LIGHTS << GN_LIGHT_PLACE_BITS;
   REQUIRE(key(0, 0, 0, 0.01F, 1, 0) == none);

@@ -2,23 +2,20 @@
 
 #include <algorithm>
 
-#include "gnomon/render/picture_tracing.h"
-
 namespace gnomon::app {
 
 PlannedTracers::PlannedTracers(const cl::Context& context, const Scene& scene, const TimedBuild& plain,
-                               const PlanOutcome& plan)
+                               const PlanOutcome& plan, const TraceOptions& how)
     : plain_(plain) {
   const std::size_t kinds = plan.chosen.size();
-  closest_ = ready(context, scene, kinds == 0 ? nullptr : plan.tree(0));
+  closest_ = ready(context, scene, kinds == 0 ? nullptr : plan.tree(0), how);
   // Without lights nothing asks: any tree will do.
-  any_ = ready(context, scene, kinds == 0 ? nullptr : plan.tree(kinds - 1));
+  any_ = ready(context, scene, kinds == 0 ? nullptr : plan.tree(kinds - 1), how);
 }
 
 PlannedTracers::Ready PlannedTracers::ready(const cl::Context& context, const Scene& scene,
-                                            const PlanTree* kept) const {
+                                            const PlanTree* kept, const TraceOptions& how) const {
   Ready out;
-  const TraceOptions how = picture_tracing(context.device(), scene);
   if (kept == nullptr) {
     out.tracer = std::make_unique<Tracer>(context, plain_.tree, how);
     return out;

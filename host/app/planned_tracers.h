@@ -13,7 +13,7 @@ namespace gnomon::app {
 class PlannedTracers {
  public:
   PlannedTracers(const cl::Context& context, const Scene& scene, const TimedBuild& plain,
-                 const PlanOutcome& plan);
+                 const PlanOutcome& plan, const TraceOptions& how);
   [[nodiscard]] PathTracers tracers() const { return {*closest_.tracer, *any_.tracer}; }
   [[nodiscard]] const DeviceBvh& closest_tree() const { return closest_.own ? *closest_.own : plain_.tree; }
 
@@ -24,7 +24,8 @@ class PlannedTracers {
     std::unique_ptr<DeviceWideBvh> wide;
     std::unique_ptr<Tracer> tracer;
   };
-  [[nodiscard]] Ready ready(const cl::Context& context, const Scene& scene, const PlanTree* kept) const;
+  [[nodiscard]] Ready ready(const cl::Context& context, const Scene& scene, const PlanTree* kept,
+                            const TraceOptions& how) const;
 
   const TimedBuild& plain_;
   Ready closest_, any_;

@@ -17,9 +17,9 @@ std::vector<RayLight> ray_lights_of(const Scene& scene) {
   return lights;
 }
 
-TraceOptions picture_tracing(const cl::DeviceInfo& device, const Scene& scene) {
+TraceOptions picture_tracing(const cl::DeviceInfo& device, const Scene& scene, bool sort_by_light) {
   TraceOptions options;
-  if (device.is_cpu && device.loop_limit == 0) options.lights = ray_lights_of(scene);
+  if (sort_by_light && device.is_cpu && device.loop_limit == 0) options.lights = ray_lights_of(scene);
   return options;
 }
 

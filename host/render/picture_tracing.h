@@ -11,8 +11,9 @@ namespace gnomon {
 // A scene's points, spots and suns, or the sun of a scene without lights; the first 31.
 [[nodiscard]] std::vector<RayLight> ray_lights_of(const Scene& scene);
 
-// For the tracers of a PathTracer: shadow rays light by light, where a device traces packets. The same
-// picture either way.
-[[nodiscard]] TraceOptions picture_tracing(const cl::DeviceInfo& device, const Scene& scene);
+// For the tracers of a PathTracer: with sort_by_light, shadow rays light by light, where a device traces
+// packets. The same picture either way.
+[[nodiscard]] TraceOptions picture_tracing(const cl::DeviceInfo& device, const Scene& scene,
+                                           bool sort_by_light);
 
 }  // namespace gnomon

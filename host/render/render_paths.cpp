@@ -20,7 +20,7 @@ RenderResult render_paths(const cl::Context& context, const DeviceBvh& tree, con
                           const RenderOptions& options, const Progress& progress,
                           const RayObserver& observer) {
   options.check();
-  const Tracer tracer(context, tree, picture_tracing(context.device(), scene));
+  const Tracer tracer(context, tree, picture_tracing(context.device(), scene, options.sort_by_light));
   return render_paths(context, {tracer, tracer}, tree, scene, options, progress, observer);
 }
 

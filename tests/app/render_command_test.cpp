@@ -80,6 +80,18 @@ TEST_CASE("the same seed gives the same picture, another seed another") {
   CHECK(picture("c.png", "2") != first);
 }
 
+TEST_CASE("shadow rays in the order of their lights make the same picture") {
+  const Folder folder;
+  const auto picture = [&](const std::string& name, const std::string& order) {
+    REQUIRE(run({"render", "gen:cottage:8k", "-o", folder.file(name), "--width", "64", "--height", "48",
+                 "--samples", "2", "--order", order, "--quiet"})
+                .status == 0);
+    return program::read_text(folder.file(name));
+  };
+  CHECK(picture("light.png", "light") == picture("given.png", "given"));
+  CHECK(run({"render", "gen:random:100", "-o", folder.file("a.png"), "--order", "origin"}).status == 2);
+}
+
 TEST_CASE("paths make a picture that has no guesses in it, the same for the same seed") {
   const Folder folder;
   const auto picture = [&](const std::string& name, const std::string& seed) {

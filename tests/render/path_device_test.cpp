@@ -156,7 +156,8 @@ TEST_CASE("rays are sorted by points, spots and suns, and by the sun of a scene 
     ++next;
   }
   const cl::DeviceInfo& device = context().device();
-  REQUIRE(picture_tracing(device, scene).lights.size() ==
+  REQUIRE(picture_tracing(device, scene, false).lights.empty());
+  REQUIRE(picture_tracing(device, scene, true).lights.size() ==
           (device.is_cpu && device.loop_limit == 0 ? wanted : 0));
   scene.lights = std::vector<Light>(100);
   REQUIRE(ray_lights_of(scene).size() == 31);

@@ -85,6 +85,10 @@ const char* const kProbe = R"(<script>
     text_contrast: Math.min(...all('figure[id] svg text:not(.letter)').map(t => contrast(paper, getComputedStyle(t).fill))),
     mark_contrast: Math.min(...all('figure[id] svg .mark').map(m => contrast(paper, getComputedStyle(m).fill))),
   };
+  // As a chart of more rows than any paper holds would be.
+  const gain = document.querySelector('#gain svg');
+  gain.setAttribute('viewBox', '0 0 400 2000');
+  found.endless_chart = gain.getBoundingClientRect().height;
   parent.postMessage(JSON.stringify(found), '*');
 })();
 </script>)";
@@ -210,6 +214,7 @@ TEST_CASE("the page works in a browser: wide, on a phone, and in the dark") {
   REQUIRE(paper.at("slider_shown") == false);
   // Letter, the shorter paper, has 979 pixels between margins: a heading and the tallest chart share a page.
   REQUIRE(paper.at("tallest_figure") < 920);
+  REQUIRE(paper.at("endless_chart") < 760);
   REQUIRE(paper.at("smallest_text") >= 8.0);  // 6 pt
 
   const json dark = look_at(folder, page, 1200, "--blink-settings=preferredColorScheme=0");

@@ -74,10 +74,11 @@ void add_compare_command(CLI::App& program, OutputOptions& output, Action& actio
       ->type_name("D");
   command
       ->add_option("--time", options->time,
-                   "how long it may take, shared by the devices: fewer rays, rounds or methods are measured "
+                   "how long it may take (60s, 10m), shared by the devices: fewer rays, rounds or methods "
+                   "are measured "
                    "where it is "
                    "short, and the page says so")
-      ->type_name("60s")
+      ->type_name("TIME")
       ->capture_default_str();
   add_count(*command, "--ray-count", options->run.ray_count, "rays of each kind at most");
   add_count(*command, "--judged-rays", options->run.judged_rays, "rays of each kind to judge");

@@ -63,6 +63,26 @@ std::string html_fact(const std::string& name, const std::string& value) {
   return "<dt>" + escaped(name) + "</dt><dd>" + escaped(value) + "</dd>\n";
 }
 
+std::string html_command(const std::string& command) {
+  constexpr std::size_t kMostWhole = 24;  // letters that a column of a phone holds
+  std::string out;
+  for (std::size_t from = 0; from < command.size();) {
+    const std::size_t next = command.find(" -", from + 1);
+    const std::string part = command.substr(from, std::min(next, command.size()) - from);
+    if (part.size() <= kMostWhole) {
+      out += "<span class=\"whole\">" + escaped(part) + "</span>";
+    } else {
+      out += unbroken(part, is_option);
+    }
+    from += part.size();
+    if (from < command.size()) {
+      out += ' ';
+      ++from;
+    }
+  }
+  return out;
+}
+
 std::string DevicePage::advice() const {
   const auto is_whole = [this](const std::string& word) {
     return is_option(word) || std::any_of(device_.methods.begin(), device_.methods.end(),
@@ -145,11 +165,10 @@ std::string DevicePage::table() const {
     const Spread seconds = spread_of(seconds_of(build->rounds, report_.clock));
     rows +=
         "<tr data-letter=\"" + letter + "\">" + html_cell(letter) +
-        html_cell(
-            escaped(method.name) + "<small>" + unbroken(method.what, is_option) +
-                (method.options.empty() ? "" : ": <code>" + unbroken(method.options, is_option) + "</code>") +
-                "</small>",
-            "name") +
+        html_cell(escaped(method.name) + "<small>" + unbroken(method.what, is_option) +
+                      (method.options.empty() ? "" : ": <code>" + html_command(method.options) + "</code>") +
+                      "</small>",
+                  "name") +
         html_cell(line == lines.end() ? "–" : time_text(time), "time") +
         html_cell(line == lines.end() || base_time == 0.0 ? "–" : fixed(time / base_time, 2), "ratio") +
         html_cell(seconds.count == 0 ? "–" : time_text(seconds.median)) +

@@ -35,5 +35,7 @@ class DevicePage {
 [[nodiscard]] std::string html_cell(const std::string& content, const std::string& classes = "");
 // A name and its value, for a list of facts.
 [[nodiscard]] std::string html_fact(const std::string& name, const std::string& value);
+// A command or a part of one: lines end between options, not inside one or before its short value.
+[[nodiscard]] std::string html_command(const std::string& command);
 
 }  // namespace gnomon::compare

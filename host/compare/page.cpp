@@ -78,7 +78,7 @@ std::string repeat_section(const Report& report) {
   for (const DeviceReport& device : report.devices) facts += DevicePage(report, device).facts();
   for (const auto& [name, value] : report.options) facts += html_fact(name, value);
   facts += html_fact("clock", report.clock == "cpu" ? "processor time of all threads" : "waiting time");
-  return "<h2>To repeat it</h2>\n<pre>" + escaped(report.command) + "</pre>\n<dl>\n" + facts +
+  return "<h2>To repeat it</h2>\n<pre>" + html_command(report.command) + "</pre>\n<dl>\n" + facts +
          "</dl>\n<p class=\"soft\">Rounds take turns: in each, every method runs once next to the others, "
          "and every other "
          "round runs backwards; a ratio is of times in one round. Rays and their answers stay in the "

@@ -205,6 +205,8 @@ Svg draw(const RowPlot& plot) {
   if (plot.even) svg.line(x.at(*plot.even), top, x.at(*plot.even), bottom, "even");
   double y = top;
   for (const RowPlot::Row& row : plot.rows) {
+    // Marks belong to the name above them, not to the one below.
+    if (y > top) svg.line(x.from(), y, x.to(), y, "grid");
     svg.text(12.0, y + 14.0, row.name, Anchor::kStart);
     if (!row.remark.empty()) svg.text(kRight, y + 14.0, row.remark, Anchor::kEnd, "soft");
     for (const RowPlot::Mark& mark : row.marks) {

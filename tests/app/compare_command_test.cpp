@@ -68,8 +68,12 @@ json read_report(const Folder& folder) {
 TEST_CASE("compare measures every method on the same rays and writes page, rows and charts") {
   const Folder folder;
   const auto begun = std::chrono::steady_clock::now();
-  const auto outcome =
-      run(command(folder.file("r.html"), {"--json", "--quiet", "--rows", folder.file("r.jsonl")}));
+  // None of what decides the rows is as it would be without a word.
+  const std::vector<std::string> chosen{"--seed", "3",  "--clock",   "cpu",
+                                        "--time", "9m", "--invalid", "reject"};
+  std::vector<std::string> more{"--json", "--quiet", "--rows", folder.file("r.jsonl")};
+  more.insert(more.end(), chosen.begin(), chosen.end());
+  const auto outcome = run(command(folder.file("r.html"), more));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
   CAPTURE(outcome.out, outcome.err);
   REQUIRE(outcome.status == 0);
@@ -190,9 +194,15 @@ TEST_CASE("compare measures every method on the same rays and writes page, rows 
   std::vector<std::string> words{std::istream_iterator<std::string>(said), {}};
   REQUIRE(words.at(0) == "gnomon");
   REQUIRE(words.back() == folder.file("r.html"));
-  for (const char* option :
-       {"--rays", "--methods", "--ray-count", "--judged-rays", "--rounds", "--seed", "--time", "--clock"})
+  for (const char* option : {"--rays", "--methods", "--ray-count", "--judged-rays", "--rounds", "--seed",
+                             "--time", "--clock", "--invalid"}) {
+    CAPTURE(option);
     REQUIRE(std::count(words.begin(), words.end(), option) == 1);
+  }
+  for (std::size_t i = 0; i < chosen.size(); i += 2) {
+    CAPTURE(chosen[i]);
+    REQUIRE(*(std::find(words.begin(), words.end(), chosen[i]) + 1) == chosen[i + 1]);
+  }
   words.erase(words.begin());
   words.back() = folder.file("repeated.html");
   const auto repeated = run(words);
@@ -200,11 +210,12 @@ TEST_CASE("compare measures every method on the same rays and writes page, rows 
   REQUIRE(repeated.status == 0);
   const json second = json::parse(program::read_text(folder.file("repeated.json")));
   REQUIRE(second.at("options") == report.at("options"));
+  REQUIRE(second.at("clock") == report.at("clock"));
   REQUIRE(timeless(second) == timeless(report));
 
   // All is finished: the same command measures nothing and writes the same bytes.
   const std::string csv = program::read_text(folder.file("r.csv"));
-  const auto again = run(command(folder.file("r.html")));
+  const auto again = run(command(folder.file("r.html"), chosen));
   CAPTURE(again.err);
   REQUIRE(again.status == 0);
   REQUIRE_THAT(again.err, Contains("going on from"));
@@ -212,7 +223,9 @@ TEST_CASE("compare measures every method on the same rays and writes page, rows 
   REQUIRE(program::read_text(folder.file("r.csv")) == csv);
 
   // Other options are other work.
-  const auto other = run(command(folder.file("r.html"), {"--seed", "2"}));
+  auto others = chosen;
+  others[1] = "2";
+  const auto other = run(command(folder.file("r.html"), others));
   REQUIRE(other.status == 0);
   REQUIRE_THAT(other.err, Contains("measuring anew"));
   REQUIRE(program::read_text(folder.file("r.html")) != page);

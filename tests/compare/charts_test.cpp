@@ -85,14 +85,22 @@ TEST_CASE("letters never cover each other, and a lone one stays on its point") {
   }
 }
 
-TEST_CASE("no line to a point is drawn over a letter") {
+TEST_CASE("nothing is drawn over a letter") {
   std::size_t scatters = 0;
   for (const auto& [name, svg] : chart_files(sample_report())) {
     if (svg.find("class=\"stem") == std::string::npos) continue;
     ++scatters;
     CAPTURE(name);
-    REQUIRE(count_of(svg, "class=\"stem") == count_of(svg, "class=\"dot"));
-    REQUIRE(svg.rfind("class=\"stem") < svg.find("class=\"dot"));
+    const std::size_t letters = count_of(svg, "class=\"dot");
+    REQUIRE(letters >= 3);
+    REQUIRE(count_of(svg, "class=\"stem") == letters);
+    // From the first letter on: each with its mark beneath it, and no line, point, path or word else.
+    const std::string top = svg.substr(svg.find("class=\"dot"));
+    REQUIRE(count_of(top, "<line") == 0);
+    REQUIRE(count_of(top, "<path") == letters);
+    REQUIRE(count_of(top, "class=\"mark ") == letters);
+    REQUIRE(count_of(top, "<text") == letters);
+    REQUIRE(count_of(top, "class=\"letter\"") == letters);
   }
   CHECK(scatters >= 4);
 }

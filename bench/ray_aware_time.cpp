@@ -18,6 +18,7 @@
 #include "gnomon/plan/choose.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon/tree/build_reference.h"
+#include "gnomon/tree/trace_wide_reference.h"
 #include "gnomon_commit.h"
 #include "paired.h"
 #include "ray_aware/set_ups.h"
@@ -52,6 +53,24 @@ Work mean_of(const std::vector<GnRayCounters>& counters) {
   }
   const auto rays = static_cast<double>(counters.size());
   return {sum.boxes / rays, sum.triangles / rays};
+}
+
+// Steps of a ray by itself in the wide tree.
+struct Steps {
+  double nodes = 0.0;
+  double blocks = 0.0;
+  double exact = 0.0;
+};
+
+Steps mean_of(const std::vector<WideSteps>& steps) {
+  Steps sum;
+  for (const WideSteps& ray : steps) {
+    sum.nodes += ray.nodes;
+    sum.blocks += ray.blocks;
+    sum.exact += ray.exact;
+  }
+  const auto rays = static_cast<double>(steps.size());
+  return {sum.nodes / rays, sum.blocks / rays, sum.exact / rays};
 }
 
 // A tree ready to be traced.
@@ -159,6 +178,9 @@ class Bench {
       const ReferenceTrace trace =
           trace_reference(entrants[i].tree().bvh, set_up.triangles, some, any, entrants[i].tree().ranks);
       const Work binary = mean_of(trace.counters);
+      std::vector<WideSteps> each;
+      trace_wide_reference(download_wide(context_, entrants[i].wide()), some, any, &each);
+      const Steps steps = mean_of(each);
       std::vector<double> ns;
       for (const double s : seconds[i]) ns.push_back(1e9 * s / count);
       const json row = {{"schema", 1},
@@ -180,6 +202,9 @@ class Bench {
                         {"traced_triangles_per_ray", traced.triangles},
                         {"wide_boxes_per_ray", wide.boxes},
                         {"wide_triangles_per_ray", wide.triangles},
+                        {"wide_nodes_per_ray", steps.nodes},
+                        {"wide_blocks_per_ray", steps.blocks},
+                        {"wide_exact_per_ray", steps.exact},
                         {"wide_nodes", entrants[i].wide().node_count},
                         {"wide_blocks", entrants[i].wide().block_count},
                         {"ns_per_ray", bench::spread_json(ns)},

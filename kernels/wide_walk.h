@@ -10,7 +10,7 @@
 #define GNOMON_WIDE_WALK_H
 
 #include "ahead.h"
-#include "wide_leaf.h"
+#include "settle.h"
 
 #ifndef GN_WIDE_STACK
 #define GN_WIDE_STACK 256
@@ -18,6 +18,9 @@
 #ifndef GN_RAYS_AT_ONCE
 #define GN_RAYS_AT_ONCE 1
 #endif
+
+// Whether what floats found is handed in, to be worked out eight rays at once (settle.h).
+#define GN_HAND_IN (GN_HAS_FP64 && !GN_FAST)
 
 #define GN_PLANES(node, offset) (*(__global const float8*)((__global const char*)(node) + (offset)))
 
@@ -89,6 +92,7 @@ typedef struct GnWideBatch {
   __global uint* occluded;
   volatile __global uint* invalid_rays;
   __global GnRayCounters* counters;
+  GnFound* found;  // hits that are not worked out yet
 #if GN_FRAME
   __global const GnBoxFrame* boxes;
 #endif
@@ -149,6 +153,9 @@ static inline void hand_over(GnWalker* walker, const GnWideBatch* batch, int any
   const GnHit* best = &walker->walk.best;
   if (any_hit) {
     batch->occluded[index] = walker->walk.found;
+  } else if (GN_HAND_IN && walker->walk.pending) {
+    const uint block = (uint)(walker->walk.pending_block - batch->blocks);
+    hand_in(batch->found, index, GN_WIDTH * block + walker->walk.pending_lane, batch->blocks, batch->rays, batch->hits);
   } else {
     settle(&walker->walk, &walker->ray);
     batch->hits[index] = (float4)(best->t, best->u, best->v, as_float(best->primitive));

@@ -30,9 +30,10 @@ static inline uint boxes_met(const GnWideRay* ray, __global const GnWideNode* no
   const float8 near_x = (GN_PLANES(node, x) - ray->origin[0]) * ray->inverse[0];
   const float8 near_y = (GN_PLANES(node, y) - ray->origin[1]) * ray->inverse[1];
   const float8 near_z = (GN_PLANES(node, z) - ray->origin[2]) * ray->inverse[2];
-  const float8 far_x = fma(GN_PLANES(node, x ^ 32u) - GN_FAR_ORIGIN(ray, 0), ray->far_inverse[0], ray->far_margin);
-  const float8 far_y = fma(GN_PLANES(node, y ^ 32u) - GN_FAR_ORIGIN(ray, 1), ray->far_inverse[1], ray->far_margin);
-  const float8 far_z = fma(GN_PLANES(node, z ^ 32u) - GN_FAR_ORIGIN(ray, 2), ray->far_inverse[2], ray->far_margin);
+  const float8 margin = (float8)(ray->far_margin);
+  const float8 far_x = fma(GN_PLANES(node, x ^ 32u) - GN_FAR_ORIGIN(ray, 0), (float8)(ray->far_inverse[0]), margin);
+  const float8 far_y = fma(GN_PLANES(node, y ^ 32u) - GN_FAR_ORIGIN(ray, 1), (float8)(ray->far_inverse[1]), margin);
+  const float8 far_z = fma(GN_PLANES(node, z ^ 32u) - GN_FAR_ORIGIN(ray, 2), (float8)(ray->far_inverse[2]), margin);
   float8 near = GN_MAX8(near_x, (float8)ray->tmin);
   float8 far = GN_MIN8(far_x, (float8)limit);
   near = GN_MAX8(near_y, near);

@@ -103,11 +103,11 @@ typedef struct GnWideBatch {
 #if GN_FRAME
 #define GN_FRAME_PARAMETER , __global const GnBoxFrame* boxes
 #define GN_FRAME_OF_BATCH , boxes
-#define GN_TAKE_RAY(ray, batch) wide_ray(ray, (batch)->boxes)
+#define GN_TAKE_RAY(out, ray, batch) set_wide_ray(out, ray, (batch)->boxes)
 #else
 #define GN_FRAME_PARAMETER
 #define GN_FRAME_OF_BATCH
-#define GN_TAKE_RAY(ray, batch) wide_ray(ray)
+#define GN_TAKE_RAY(out, ray, batch) set_wide_ray(out, ray)
 #endif
 
 static inline void send_for(const GnWideBatch* batch, uint link) {
@@ -175,7 +175,7 @@ static inline uint take_up(GnWalker* walker, const GnWideBatch* batch, uint inde
   walker->current = 0u;
   walker->height = 0u;
   if (gn_ray_is_valid(&ray)) {
-    walker->ray = GN_TAKE_RAY(&ray, batch);
+    GN_TAKE_RAY(&walker->ray, &ray, batch);
     return 1u;
   }
   atomic_inc(batch->invalid_rays);

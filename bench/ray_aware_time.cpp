@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "contest.h"
+#include "device_builder.h"
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/trace_device.h"
 #include "gnomon/plan/choose.h"
@@ -118,27 +119,34 @@ class Bench {
   void run(const std::string& scene) {
     const AwareSetUp made =
         bench::generated_set_up(scene, generate_scene(scene, settings_.triangles, 1), settings_.rays);
-    PlanBuilder builder = reference_builder();
     const Bvh plain = download_bvh(context_, build_device(context_, made.triangles));
+    std::vector<const RayCase*> cases;
+    std::vector<PlanRays> asked;
     for (const RayCase& rays : made.cases) {
       // Every box on the way is not what a tracer does.
-      if (rays.query != Query::kEvery) run_case(made, rays, plain, builder);
+      if (rays.query == Query::kEvery) continue;
+      cases.push_back(&rays);
+      asked.push_back(
+          {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, settings_.expected, rays.together});
     }
-  }
-
- private:
-  void run_case(const AwareSetUp& set_up, const RayCase& rays, const Bvh& plain, const PlanBuilder& builder) {
     PlanOptions options;
     options.keep_tried = true;
     options.light_space = true;
-    const std::vector<PlanRays> asked{
-        {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, settings_.expected}};
-    const Plan plan = make_plan(set_up.triangles, asked, options, builder);
+    options.packets = true;
+    const Plan plan = make_plan(made.triangles, asked, options, app::device_builder(context_));
+    for (std::size_t i = 0; i < cases.size(); ++i)
+      run_case(made, *cases[i], plain, plan.trees, plan.decisions[i]);
+  }
+
+ private:
+  void run_case(const AwareSetUp& set_up, const RayCase& rays, const Bvh& plain,
+                const std::vector<PlanTree>& trees, const Decision& decision) {
     std::vector<Entrant> entrants;
     entrants.emplace_back(context_, "balanced", OrderedTree{plain, {}}, set_up.triangles);
-    for (const PlanTree& tree : plan.trees)
-      entrants.emplace_back(context_, tree.name, tree.tree, set_up.triangles);
-    report(set_up, rays, entrants, time(entrants, rays), plan.decisions.front().kept);
+    entrants.emplace_back(context_, "sah", trees.front().tree, set_up.triangles);
+    for (const Trial& trial : decision.trials)
+      entrants.emplace_back(context_, trial.name, trees[trial.tree].tree, set_up.triangles);
+    report(set_up, rays, entrants, time(entrants, rays), decision.kept);
   }
 
   [[nodiscard]] std::vector<std::vector<double>> time(const std::vector<Entrant>& entrants,
@@ -179,7 +187,8 @@ class Bench {
           trace_reference(entrants[i].tree().bvh, set_up.triangles, some, any, entrants[i].tree().ranks);
       const Work binary = mean_of(trace.counters);
       std::vector<WideSteps> each;
-      trace_wide_reference(download_wide(context_, entrants[i].wide()), some, any, &each);
+      const WideBvh wide_tree = download_wide(context_, entrants[i].wide());
+      const std::vector<Hit> hits = trace_wide_reference(wide_tree, some, any, &each).hits;
       const Steps steps = mean_of(each);
       std::vector<double> ns;
       for (const double s : seconds[i]) ns.push_back(1e9 * s / count);

@@ -64,7 +64,7 @@ static inline void set_wide_ray(GnWideRay* out, const GnRay* ray, __global const
 static inline void set_wide_ray(GnWideRay* out, const GnRay* ray) {
 #endif
   uint k;
-  gn_set_ray_frame(&out->frame, ray);
+  out->frame = gn_ray_frame(ray);
   for (k = 0u; k < 3u; ++k) {
 #if GN_FRAME
     const float inverse = turned.inverse[k];

@@ -181,7 +181,8 @@ PlanTask plan_task(const Options& options, const cl::Context& context, const Sce
           counted,
           draw,
           TreesWanted::kOneEach,
-          takes_frames(context.device(), how_to_trace(options).flavour)};
+          takes_frames(context.device(), how_to_trace(options).flavour),
+          takes_packets(context.device(), how_to_trace(options).flavour)};
 }
 
 int run(const Options& options, Console& console) {

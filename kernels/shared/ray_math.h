@@ -42,24 +42,20 @@ GN_INLINE gn_f32 gn_slab_inverse(gn_f32 component) {
   return magnitude != 0u && magnitude < 0x00800000u ? gn_float_of(0x7fc00000u) : 1.0f / component;
 }
 
-GN_INLINE void gn_set_ray_frame(GnRayFrame* frame, const GnRay* ray) {
-  const gn_f32 x = gn_abs(ray->direction[0]), y = gn_abs(ray->direction[1]), z = gn_abs(ray->direction[2]);
-  int k;
-  for (k = 0; k < 3; ++k) {
-    frame->origin[k] = ray->origin[k];
-    frame->direction[k] = ray->direction[k];
-    frame->inverse[k] = gn_slab_inverse(ray->direction[k]);
-  }
-  frame->kz = z > (y > x ? y : x) ? 2u : y > x ? 1u : 0u;
-  frame->kx = frame->kz == 2u ? 0u : frame->kz + 1u;
-  frame->ky = frame->kx == 2u ? 0u : frame->kx + 1u;
-  frame->shear_x = ray->direction[frame->kx] / ray->direction[frame->kz];
-  frame->shear_y = ray->direction[frame->ky] / ray->direction[frame->kz];
-}
-
 GN_INLINE GnRayFrame gn_ray_frame(const GnRay* ray) {
   GnRayFrame frame;
-  gn_set_ray_frame(&frame, ray);
+  int k;
+  for (k = 0; k < 3; ++k) {
+    frame.origin[k] = ray->origin[k];
+    frame.direction[k] = ray->direction[k];
+    frame.inverse[k] = gn_slab_inverse(ray->direction[k]);
+  }
+  frame.kz = gn_abs(ray->direction[1]) > gn_abs(ray->direction[0]) ? 1u : 0u;
+  if (gn_abs(ray->direction[2]) > gn_abs(ray->direction[frame.kz])) frame.kz = 2u;
+  frame.kx = frame.kz == 2u ? 0u : frame.kz + 1u;
+  frame.ky = frame.kx == 2u ? 0u : frame.kx + 1u;
+  frame.shear_x = ray->direction[frame.kx] / ray->direction[frame.kz];
+  frame.shear_y = ray->direction[frame.ky] / ray->direction[frame.kz];
   return frame;
 }
 

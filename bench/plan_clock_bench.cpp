@@ -117,7 +117,6 @@ int main(int argc, char** argv) {
   app.add_option("--expected", settings.expected, "rays that trees must repay themselves over");
   app.add_option("--rounds", settings.rounds);
   CLI11_PARSE(app, argc, argv);
-  settings.sources.rays = 256;  // none is measured
   try {
     const cl::Context context = bench::one_thread_context();
     const Bench bench(settings, context);

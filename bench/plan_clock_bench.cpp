@@ -1,7 +1,7 @@
 // The question: what does a plan take by the clock, beside the build of its baseline? Every set-up of
-// ray_aware_bench, a plan for one kind of rays at a time, trees built by the device; process CPU time. What of
-// that makes the tree that is kept is told by a plan that is asked for this tree, which tries and probes nothing.
-// JSON rows on stdout, one a set-up and kind of rays.
+// ray_aware_bench, a plan for one kind of rays at a time, trees built by the device; process CPU time. What
+// of that makes the tree that is kept is told by a plan that is asked for this tree, which tries and probes
+// nothing. JSON rows on stdout, one a set-up and kind of rays.
 //
 //   plan_clock_bench thesis --configs CONFIGS.json --scenes DIR [--only WORD]
 //   plan_clock_bench generated [--scenes atrium,city] [--triangles 100000]
@@ -56,7 +56,8 @@ class Bench {
       return true;
     };
     const double start = bench::cpu_seconds();
-    Plan plan = make_plan(set_up.triangles, std::span(&rays, 1), options, app::device_builder(context_), watch);
+    Plan plan =
+        make_plan(set_up.triangles, std::span(&rays, 1), options, app::device_builder(context_), watch);
     clock = {1e3 * (built - start), 1e3 * (bench::cpu_seconds() - built)};
     return plan;
   }

@@ -1,12 +1,13 @@
-// Writes the page of what trees for given rays save in time, how well time is predicted, and what planning takes
-// by the clock, from the rows of ray_aware_time and plan_clock_bench and from nothing else; or checks that the
-// page is what the rows give.
+// Writes the page of what trees for given rays save in time, how well time is predicted, and what planning
+// takes by the clock, from the rows of ray_aware_time and plan_clock_bench and from nothing else; or checks
+// that the page is what the rows give.
 //
 //   ray_aware_time_page ROWS.jsonl PAGE.md [--check]
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -30,9 +31,14 @@ double geomean(const std::vector<double>& values) {
   return values.empty() ? 1.0 : std::exp(sum / static_cast<double>(values.size()));
 }
 
+// "1e5": a scene's triangles, roughly.
+std::string size_of(const json& row) {
+  return "1e" + number(std::log10(row.at("triangles").get<double>()), "%.0f");
+}
+
 // One scene's rays of one kind, its trees by name.
 struct Case {
-  std::string scene, rays, query;
+  std::string scene, rays, query, size;
   std::map<std::string, json> trees;
 };
 
@@ -184,11 +190,14 @@ class PlanClock {
   [[nodiscard]] std::string text() const {
     if (groups_.empty()) return "";
     std::string out =
-        "\n## Planning by the clock\n\nProcess CPU time of planning over that of building the baseline, trees "
-        "built by the device; median of rounds. First without\nmaking what is kept, which a plan that is asked for that "
+        "\n## Planning by the clock\n\nProcess CPU time of planning over that of building the baseline, "
+        "trees "
+        "built by the device; median of rounds. First without\nmaking what is kept, which a plan that is "
+        "asked for that "
         "tree takes; then all of it. Mean over set-ups (most), those above 0.5; the same\n"
         "by the plan's own prices.\n" +
-        page::head_of({"rays", "set-ups", "without what is kept", "above 0.5", "by prices", "all", "by prices"});
+        page::head_of(
+            {"rays", "set-ups", "without what is kept", "above 0.5", "by prices", "all", "by prices"});
     for (const auto& [name, rows] : groups_) {
       std::vector<double> own, own_priced, all, all_priced;
       for (const json& row : rows) {
@@ -229,14 +238,15 @@ class Page {
         clock_.add(row);
         continue;
       }
-      Case& found = cases_[{row.at("query"), row.at("scene"), row.at("rays")}];
+      Case& found = cases_[{row.at("query"), size_of(row), row.at("scene"), row.at("rays")}];
+      found.size = size_of(row);
       found.scene = row.at("scene");
       found.rays = row.at("rays");
       found.query = row.at("query");
       found.trees[row.at("tree").get<std::string>()] = row;
       different_ += row.at("different_hits").get<std::uint64_t>();
       device_ = row.at("device");
-      triangles_ = std::max(triangles_, row.at("triangles").get<std::uint64_t>());
+      sizes_.insert(found.size);
       rows_ += 1;
     }
   }
@@ -251,16 +261,23 @@ class Page {
         "an order "
         "that turns; median (least–most)\nof the rounds' ratios. Counts: 1.0 a box and 1.2 a triangle in the "
         "binary "
-        "tree. sah: the plan's baseline; balanced: what is\nbuilt without a plan. Scenes of up to " +
-        std::to_string(triangles_) + " triangles. Hits that\ndiffer: " + std::to_string(different_) + ".\n";
-    for (const char* const query : {"closest", "any"}) out += savings(query);
+        "tree. sah: the plan's baseline; balanced: what is\nbuilt without a plan. Hits that differ: " +
+        std::to_string(different_) + ".\n";
+    for (const std::string& size : sizes_) {
+      for (const char* const query : {"closest", "any"}) out += savings(query, size);
+    }
     out +=
-        "\n## Time predicted\n\nNanoseconds a ray: what any ray of its kind takes, and so much a node and a block of "
-        "eight triangles that it looks into; where rays run\ntogether and tests are shared, so much a box and a "
-        "triangle. By least squares of relative errors over all rows of a query. Other\nscenes: each scene by "
+        "\n## Time predicted\n\nNanoseconds a ray: what any ray of its kind takes, and so much a node and a "
+        "block of "
+        "eight triangles that it looks into; where rays run\ntogether and tests are shared, so much a box "
+        "and a "
+        "triangle. By least squares of relative errors over all rows of a query. Other\nscenes: each scene "
+        "by "
         "what was fitted to all others. Counts alone: one factor. Cells: correlation, mean error.\n\n| "
         "query | rows | ns | fitted | other scenes | counts alone |\n|---|---|---|---|---|---|\n";
-    for (const char* const query : {"closest", "any"}) out += prediction(query);
+    for (const std::string& size : sizes_) {
+      for (const char* const query : {"closest", "any"}) out += prediction(query, size);
+    }
     return out + clock_.text();
   }
 
@@ -271,14 +288,14 @@ class Page {
            number(s.at("max"), "%.2f") + ")";
   }
 
-  [[nodiscard]] std::string savings(const std::string& query) const {
-    std::string out =
-        "\n## " + std::string(query == "any" ? "Any hit" : "Closest hit") +
-        "\n\n| scene, rays | kept | counts of sah | time of sah | counts of balanced | time of balanced "
-        "|\n|---|---|---|---|---|---|\n";
+  [[nodiscard]] std::string savings(const std::string& query, const std::string& size) const {
+    std::string out = "\n## " + std::string(query == "any" ? "Any hit" : "Closest hit") + ", " + size +
+                      " triangles\n\n| scene, rays | kept | counts of sah | time of sah | counts of balanced "
+                      "| time of balanced "
+                      "|\n|---|---|---|---|---|---|\n";
     Ratios of_sah, of_balanced;
     for (const auto& [key, c] : cases_) {
-      if (c.query != query) continue;
+      if (c.query != query || c.size != size) continue;
       const std::string kept = c.trees.at("sah").at("kept");
       const json& own = c.trees.at(kept);
       of_sah.add(own, c.trees.at("sah"), "time_of_sah");
@@ -292,12 +309,16 @@ class Page {
            of_balanced.share() + " against balanced.\n";
   }
 
-  [[nodiscard]] std::string prediction(const std::string& query) const {
+  // Of one size: what lies in no near cache takes longer.
+  [[nodiscard]] std::string prediction(const std::string& query, const std::string& size) const {
     std::vector<const json*> all;
+    std::set<std::string> scenes;
     for (const auto& [key, c] : cases_) {
-      if (c.query != query) continue;
+      if (c.query != query || c.size != size) continue;
+      scenes.insert(c.scene);
       for (const auto& [name, row] : c.trees) all.push_back(&row);
     }
+    if (scenes.size() < kFewestScenes) return "";
     const TimeModel model(all);
     std::vector<double> fitted, elsewhere, wanted, costs;
     for (const json* const row : all) {
@@ -314,7 +335,8 @@ class Page {
     for (std::size_t i = 0; i < costs.size(); ++i)
       factor += wanted[i] / costs[i] / static_cast<double>(costs.size());
     for (double& cost : costs) cost *= factor;
-    std::string out = "| " + query + " | " + std::to_string(all.size()) + " | " + model.words() + " |";
+    std::string out =
+        "| " + query + ", " + size + " | " + std::to_string(all.size()) + " | " + model.words() + " |";
     for (const auto* const values : {&fitted, &elsewhere, &costs}) {
       const Quality quality = quality_of(*values, wanted);
       out += std::string(" ") + number(quality.correlation, "%.3f") + ", " +
@@ -323,11 +345,13 @@ class Page {
     return out + "\n";
   }
 
-  std::map<std::array<std::string, 3>, Case> cases_;
+  static constexpr std::size_t kFewestScenes = 3;  // that tell what others take
+
+  std::map<std::array<std::string, 4>, Case> cases_;
+  std::set<std::string> sizes_;
   PlanClock clock_;
   std::string commit_, device_;
   std::uint64_t different_ = 0;
-  std::uint64_t triangles_ = 0;
   std::size_t rows_ = 0;
 };
 

@@ -46,6 +46,7 @@ take_ray_aware() {
 }
 take_ray_aware_time() {
   "$build/bench/ray_aware_time"
+  "$build/bench/ray_aware_time" --scenes city,forest --triangles 1000000 --rays 16384
   "$build/bench/plan_clock_bench" thesis --configs "${THESIS_CONFIGS:?the set-ups, a JSON file}" \
     --scenes "${THESIS_SCENES:?a folder}"
   "$build/bench/plan_clock_bench" generated

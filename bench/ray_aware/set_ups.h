@@ -1,6 +1,6 @@
-// The rays of ray_aware_bench and plan_clock_bench: the thesis' set-ups, and generated scenes with their cameras and lights. Every
-// kind of rays is drawn three times with different seeds: to fit to, to choose by, to measure. Feeds
-// those and ray_aware_time.cpp.
+// The rays of ray_aware_bench and plan_clock_bench: the thesis' set-ups, and generated scenes with their
+// cameras and lights. Every kind of rays is drawn three times with different seeds: to fit to, to choose by,
+// to measure. Feeds those and ray_aware_time.cpp.
 #pragma once
 
 #include <functional>

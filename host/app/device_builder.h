@@ -1,4 +1,5 @@
-// Plans' trees built by a device, the same bytes as in plain C++. Feeds the subcommands, and benches of plans.
+// Plans' trees built by a device, the same bytes as in plain C++. Feeds the subcommands, and benches of
+// plans.
 #pragma once
 
 #include "gnomon/cl/context.h"

@@ -96,8 +96,8 @@ class Chooser {
     return trees_.size() - 1;
   }
 
-  // One candidate after the other until one is kept, boxes along the rays before all others; none is made that
-  // could not repay itself.
+  // One candidate after the other until one is kept, boxes along the rays before all others; none is made
+  // that could not repay itself.
   void decide() {
     if (probes_.size() < options_.race.least || rays_.fit.empty()) {
       decision_.reason = "too few rays to judge by: " + std::to_string(probes_.size()) + " probes";
@@ -120,8 +120,8 @@ class Chooser {
                        number(hope / (kMostSaved * options_.prices.saved), 0);
   }
 
-  // By totals before anything is made, and by a few probes: boxes of axis-parallel walls are fatter in any frame
-  // but the world's. Whether nothing else need be made.
+  // By totals before anything is made, and by a few probes: boxes of axis-parallel walls are fatter in any
+  // frame but the world's. Whether nothing else need be made.
   bool consider_frame(double hope) {
     if (!options_.light_space || decision_.obliquity < options_.least_oblique) return false;
     if (!(hope > 2.0 * pool_.likely_price("light-rays"))) return false;
@@ -241,7 +241,8 @@ class Chooser {
                          " cheaper on probe rays; saves the work of " + number(trial.saving, 0) +
                          " box tests for a price of " + number(trial.price, 0);
     } else if (better && trial.saving <= 0.0) {
-      decision_.reason = trial.name + " does " + percent(1.0 - trial.standing.cost / trial.standing.baseline) +
+      decision_.reason = trial.name + " does " +
+                         percent(1.0 - trial.standing.cost / trial.standing.baseline) +
                          " less work on probe rays, too little to save time in packets or in a frame";
     } else if (better) {
       decision_.reason = trial.name + " is cheaper to trace but does not repay its price over " +

@@ -9,8 +9,8 @@
 
 namespace gnomon {
 
-// make_walk(ray) gives a walk with run(), best and counters, which finish(walk) sees when it is over. Rays that
-// are not traceable are counted and miss.
+// make_walk(ray) gives a walk with run(), best and counters, which finish(walk) sees when it is over. Rays
+// that are not traceable are counted and miss.
 template <typename MakeWalk, typename Finish>
 ReferenceTrace trace_by(std::span<const Ray> rays, const MakeWalk& make_walk, const Finish& finish) {
   ReferenceTrace out;

@@ -9,7 +9,8 @@
 
 namespace gnomon {
 
-// What a ray does in the wide tree, in steps as the tracer takes them: eight boxes or eight triangles at once.
+// What a ray does in the wide tree, in steps as the tracer takes them: eight boxes or eight triangles at
+// once.
 struct WideSteps {
   std::uint32_t nodes = 0;
   std::uint32_t blocks = 0;

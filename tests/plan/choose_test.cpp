@@ -174,7 +174,8 @@ TEST_CASE("where sampled rays bring nothing, any hit still gets its order") {
   REQUIRE(plan.decisions[1].trials.size() == 2);
 }
 
-TEST_CASE("rays that packets take together keep the baseline where too little would be left of what is saved") {
+TEST_CASE(
+    "rays that packets take together keep the baseline where too little would be left of what is saved") {
   auto rays = both_kinds(kMany);
   rays[0].together = true;
   PlanOptions options;

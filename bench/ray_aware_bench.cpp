@@ -48,7 +48,8 @@ class Builder {
     PlanBuilder out = reference_builder();
     out.build = [this](std::span<const Triangle> triangles, const BuildOptions& options) {
       const float* w = options.measure.weights;
-      const auto [at, fresh] = built_.try_emplace({triangles_hash(triangles), {w[0], w[1], w[2]}});
+      const auto [at, fresh] = built_.try_emplace(
+          {triangles_hash(triangles), {w[0], w[1], w[2], static_cast<float>(options.builder)}});
       if (fresh) at->second = build_reference(triangles, options);
       return at->second;
     };
@@ -61,7 +62,8 @@ class Builder {
   }
 
  private:
-  std::map<std::pair<std::uint64_t, std::array<float, 3>>, Bvh> built_;
+  // By scene, face weights and builder.
+  std::map<std::pair<std::uint64_t, std::array<float, 4>>, Bvh> built_;
   std::map<std::pair<std::string, std::array<float, 3>>, Bvh> moved_;
 };
 
@@ -81,7 +83,12 @@ class Bench {
         {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, settings_.expected}};
     const Plan plan = make_plan(set_up_.triangles, asked, settings_.plan, builder_.get());
     const Decision& decision = plan.decisions.front();
-    const OrderedTree& baseline = plan.trees.front().tree;
+    // Of parts of triangles where spatial splits pay; else there is nothing like it in the pool.
+    const std::string own = plan.trees.front().name;
+    PlanOptions plain = settings_.plan;
+    plain.choice = "sah";
+    const Plan sah = make_plan(set_up_.triangles, asked, plain, builder_.get());
+    const OrderedTree& baseline = sah.trees.front().tree;
     const std::vector<Hit> expected =
         trace_reference(baseline.bvh, set_up_.triangles, rays.draws.measure, rays.query == Query::kAny).hits;
     json start = {{"schema", 1},
@@ -95,7 +102,8 @@ class Bench {
                   {"measured_rays", rays.draws.measure.size()}};
     row(start, "sah", baseline, rays, expected, json::object());
     for (const std::string& name : candidate_names()) {
-      if (name == "sah" || (name == "sah-order" && rays.query != Query::kAny)) continue;
+      if (name == "sah" || (name.ends_with("-order") && rays.query != Query::kAny)) continue;
+      if (name.starts_with("best") && own != "best") continue;
       if (name.starts_with("light") && decision.obliquity < settings_.plan.least_oblique) continue;
       PlanOptions options = settings_.plan;
       options.choice = name;
@@ -111,11 +119,12 @@ class Bench {
       }
       row(start, name, tree.tree, rays, expected, more);
       // The same tree, near child first: what the order alone brings.
-      if (rays.query == Query::kAny && name != "sah-order")
+      if (rays.query == Query::kAny && name != "best" && !name.ends_with("-order"))
         row(start, name + " near", {tree.tree.bvh, {}}, rays, expected, json::object());
     }
     row(start, "auto", plan.trees[decision.tree].tree, rays, expected,
-        {{"kept", decision.kept},
+        {{"baseline", own},
+         {"kept", decision.kept},
          {"reason", decision.reason},
          {"probes", decision.probes},
          {"baseline_units", plan.baseline_units},

@@ -143,7 +143,7 @@ class Bench {
                 const std::vector<PlanTree>& trees, const Decision& decision) {
     std::vector<Entrant> entrants;
     entrants.emplace_back(context_, "balanced", OrderedTree{plain, {}}, set_up.triangles);
-    entrants.emplace_back(context_, "sah", trees.front().tree, set_up.triangles);
+    entrants.emplace_back(context_, trees.front().name, trees.front().tree, set_up.triangles);
     for (const Trial& trial : decision.trials)
       entrants.emplace_back(context_, trial.name, trees[trial.tree].tree, set_up.triangles);
     report(set_up, rays, entrants, time(entrants, rays), decision.kept);

@@ -3,6 +3,10 @@
 #ifndef GNOMON_CHILDREN_FIRST_H
 #define GNOMON_CHILDREN_FIRST_H
 
+// Lanes that a work-group smaller than the device's vectors leaves over: Mesa's llvmpipe has them run along in loops. What they
+// load is 0, so a loop that looks for something never ends there, and uses up the turns of all (loops-that-end.md).
+#define GN_IDLE_LANE (get_local_id(0) >= get_local_size(0))
+
 #define GN_CHILDREN_DONE 0x80000000u
 
 // Runs `visit`, an expression that uses the uint `node`, for every inner node of the subtree whose root, an inner node,

@@ -1,8 +1,9 @@
 // From the binary tree to the wide one (shared/wide_layout.h): cuts the tree into subtrees, works out from the leaves up
 // what collapsing them costs, then writes wide nodes and triangle blocks from the root down. A wide node's children
 // that are nodes lie side by side, what is below them follows child by child: numbers depend on the tree alone, not
-// on the cuts. One work-item a subtree throughout. weights, slot_keys: one a node of the binary tree, where they
-// are given. Options: GN_COLLAPSE_DEPTH, above the binary tree's depth.
+// on the cuts. One work-item a subtree throughout. weights: one a node of the binary tree, where they are given.
+// slot_keys: one a node; the caller's, or worked out as costs are (write_keys != 0).
+// Options: GN_COLLAPSE_DEPTH, above the binary tree's depth.
 #include "ahead.h"
 #include "children_first.h"
 #include "shared/collapse_math.h"
@@ -68,6 +69,36 @@ static inline float8 forest_vector(__global const GnNode* nodes, __global const 
   return vload8((nodes[node].first - 1u) / 2u, (__global const float*)forests);
 }
 
+// gn_shown_area, with vectors.
+static inline float shown_by_leaf(__global const GnLeafTriangle* triangles, uint first, uint count) {
+  float shown = 0.0f;
+  uint i;
+  for (i = first; i < first + count; ++i) {
+    __global const float* corners = (__global const float*)(triangles + i);
+    // Behind the first corner stands the triangle's number: as a float it is denormal, which is slow.
+    const float4 v0 = as_float4(vload4(0, (__global const uint*)corners) & (uint4)(~0u, ~0u, ~0u, 0u));
+    const float4 a = vload4(1, corners) - v0, b = vload4(2, corners) - v0;
+    const float4 normal = fabs(a.yzxw * b.zxyw - a.zxyw * b.yzxw);
+    shown += 0.5f * (normal.x + normal.y + normal.z);
+  }
+  return shown;
+}
+
+// Keys of a node's children, whose places hold what shows below them if they are inner nodes; the node's place then does.
+static inline void write_keys_below(__global const GnNode* nodes, __global const GnLeafTriangle* triangles,
+                                    __global float* keys, uint node) {
+  const uint first = nodes[node].first;
+  float sum = 0.0f;
+  uint child;
+  for (child = first; child < first + 2u; ++child) {
+    const uint count = nodes[child].count;
+    const float shown = count > 0u ? shown_by_leaf(triangles, nodes[child].first, count) : keys[child];
+    keys[child] = gn_slot_key(gn_half_area(nodes + child), shown);
+    sum += shown;
+  }
+  keys[node] = sum;
+}
+
 // gn_inner_forest on vectors: the same sums and minima, those of all budgets at once. Compilers leave its loops loops.
 static inline void join_children(__global const GnNode* nodes, __global GnForest* forests, uint node,
                                  const GnNodeValues* weights, GnCollapseCosts costs) {
@@ -102,22 +133,30 @@ static inline void join_children(__global const GnNode* nodes, __global GnForest
 // Forests of the inner nodes of one subtree per work-item, children before parents.
 __kernel void weigh_subtrees(__global const GnNode* nodes, __global GnForest* forests, __global const uint* tasks,
                              uint task_count, float node_cost, float block_cost, __global const float* node_weights,
-                             uint weights_given) {
+                             uint weights_given, __global const GnLeafTriangle* triangles, __global float* slot_keys,
+                             uint write_keys) {
   const GnNodeValues weights = {node_weights, weights_given};
   const uint task = (uint)get_global_id(0);
   const GnCollapseCosts costs = {node_cost, block_cost};
-  if (task >= task_count) return;
-  GN_CHILDREN_FIRST(nodes, tasks[task], join_children(nodes, forests, node, &weights, costs))
+  if (task >= task_count || GN_IDLE_LANE) return;
+  GN_CHILDREN_FIRST(nodes, tasks[task], {
+    join_children(nodes, forests, node, &weights, costs);
+    if (write_keys != 0u) write_keys_below(nodes, triangles, slot_keys, node);
+  })
 }
 
 // One work-item: forests of the nodes above the subtrees, from the last found to the root.
 __kernel void weigh_top(__global const GnNode* nodes, __global GnForest* forests, __global const uint* top,
                         uint top_count, float node_cost, float block_cost, __global const float* node_weights,
-                        uint weights_given) {
+                        uint weights_given, __global const GnLeafTriangle* triangles, __global float* slot_keys,
+                        uint write_keys) {
   const GnNodeValues weights = {node_weights, weights_given};
   const GnCollapseCosts costs = {node_cost, block_cost};
   uint i;
-  for (i = top_count; i > 0u; --i) join_children(nodes, forests, top[i - 1u], &weights, costs);
+  for (i = top_count; i > 0u; --i) {
+    join_children(nodes, forests, top[i - 1u], &weights, costs);
+    if (write_keys != 0u) write_keys_below(nodes, triangles, slot_keys, top[i - 1u]);
+  }
 }
 
 typedef struct GnTree {
@@ -128,7 +167,7 @@ typedef struct GnTree {
   __global GnTriangleBlock* blocks;
   GnCollapseCosts costs;
   GnNodeValues weights;
-  GnNodeValues keys;
+  __global const float* keys;
 } GnTree;
 
 // Wide nodes not yet written, their numbers, and the next free numbers below them.
@@ -231,7 +270,7 @@ static inline void enter_node(const GnTree* tree, GnEmission* work, const GnSlot
 }
 
 static inline void open_top(const GnTree* tree, const GnEmission* work, GnSlots* slots) {
-  gn_open_wide_node(tree->nodes, tree->forests, work->roots[work->height - 1u], tree->costs, &tree->weights, &tree->keys,
+  gn_open_wide_node(tree->nodes, tree->forests, work->roots[work->height - 1u], tree->costs, &tree->weights, tree->keys,
                     slots);
 }
 
@@ -296,9 +335,9 @@ static inline void expect_triangles(const GnTree* tree, uint root) {
 #define GN_TREE_PARAMETERS                                                                                         \
   __global const GnNode *nodes, __global const GnForest *forests, __global const GnLeafTriangle *triangles,         \
       __global GnWideNode *wide_nodes, __global GnTriangleBlock *blocks, float node_cost, float block_cost,                   \
-      __global const float *node_weights, uint weights_given, __global const float *slot_keys, uint keys_given
+      __global const float *node_weights, uint weights_given, __global const float *slot_keys
 #define GN_TREE \
-  {nodes, forests, triangles, wide_nodes, blocks, {node_cost, block_cost}, {node_weights, weights_given}, {slot_keys, keys_given}}
+  {nodes, forests, triangles, wide_nodes, blocks, {node_cost, block_cost}, {node_weights, weights_given}, slot_keys}
 
 // One work-item, twice. Goes through the wide nodes above subtrees of at most `limit` triangles. First (write == 0) it
 // lists those subtrees; then, knowing what each holds, it writes the nodes above and tells each where to write.
@@ -346,7 +385,7 @@ __kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks,
   const GnTree tree = GN_TREE;
   GnEmission work;
   uint2 ranks;
-  if (index >= task_count) return;
+  if (index >= task_count || GN_IDLE_LANE) return;
   ranks = ranks_of(&tree, tasks[index].root);
   expect_range(nodes + 1u + 2u * ranks.x, (ranks.y - ranks.x) * 2u * sizeof(GnNode));
   expect_range(forests + ranks.x, (ranks.y - ranks.x) * sizeof(GnForest));
@@ -369,7 +408,7 @@ __kernel void emit_subtrees(GN_TREE_PARAMETERS, __global const GnCollapseTask* t
   const GnTree tree = GN_TREE;
   GnEmission work;
   uint2 ranks;
-  if (index >= task_count) return;
+  if (index >= task_count || GN_IDLE_LANE) return;
   ranks = ranks_of(&tree, tasks[index].root);
   expect_range(nodes + 1u + 2u * ranks.x, (ranks.y - ranks.x) * 2u * sizeof(GnNode));
   expect_triangles(&tree, tasks[index].root);

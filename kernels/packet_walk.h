@@ -1,6 +1,6 @@
 // A packet of rays through the wide tree: a node's boxes are tested against the bounds of all rays at once; a child that
 // is left is tested against the rays themselves, sixteen at a time, when its turn comes. Closest hit visits children
-// by distance, any hit the largest first.
+// by distance, any hit the last slot first.
 // Options: GN_WIDE_STACK, GN_COUNTERS, GN_PORTABLE. Feeds trace_packet.cl.
 #ifndef GNOMON_PACKET_WALK_H
 #define GNOMON_PACKET_WALK_H

@@ -61,7 +61,7 @@ static inline void refit_inner(__global GnNode* nodes, uint node, __global const
 __kernel void refit_subtrees(__global GnNode* nodes, __global const GnLeafTriangle* triangles,
                              __global const uint* tasks, uint task_count) {
   const uint task = (uint)get_global_id(0);
-  if (task >= task_count) return;
+  if (task >= task_count || GN_IDLE_LANE) return;
   GN_CHILDREN_FIRST(nodes, tasks[task], refit_inner(nodes, node, triangles))
 }
 
@@ -112,24 +112,19 @@ __kernel void find_levels(__global const uint* parents, __global uint* levels, u
   levels[node] = level;
 }
 
-// A box with the slot's link, as slots are put in order.
 typedef struct GnSlotBox {
   float lo[3];
   float hi[3];
-  float area;
-  uint link;
 } GnSlotBox;
 
-static inline GnSlotBox empty_slot_box(uint link) {
+static inline GnSlotBox empty_slot_box(void) {
   GnSlotBox box;
   gn_empty_box(box.lo, box.hi);
-  box.link = link;
-  box.area = 0.0f;
   return box;
 }
 
 static inline GnSlotBox box_of_blocks(__global const GnTriangleBlock* blocks, uint link) {
-  GnSlotBox box = empty_slot_box(link);
+  GnSlotBox box = empty_slot_box();
   const uint count = gn_link_triangles(link);
   uint i, k, corner;
   for (i = 0u; i < count; ++i) {
@@ -145,8 +140,8 @@ static inline GnSlotBox box_of_blocks(__global const GnTriangleBlock* blocks, ui
   return box;
 }
 
-static inline GnSlotBox box_of_slots(__global const GnWideNode* node, uint link) {
-  GnSlotBox box = empty_slot_box(link);
+static inline GnSlotBox box_of_slots(__global const GnWideNode* node) {
+  GnSlotBox box = empty_slot_box();
   uint slot, k;
   for (slot = 0u; slot < GN_WIDTH; ++slot) {  // empty slots are inverted and change nothing
     for (k = 0u; k < 3u; ++k) {
@@ -157,34 +152,25 @@ static inline GnSlotBox box_of_slots(__global const GnWideNode* node, uint link)
   return box;
 }
 
-// One work-item per wide node; those of one level work, all below it are done. Slots are put in order of area again,
-// equal ones in the order they had; a link goes with its box.
+// One work-item per wide node; those of one level work, all below it are done. Slots stay where they are: their order
+// changes no answer, and whoever chose it knew more than the corners tell.
 __kernel void refit_level(__global GnWideNode* nodes, __global const GnTriangleBlock* blocks,
                           __global const uint* levels, uint level, uint count) {
   const uint node = (uint)get_global_id(0);
-  GnSlotBox slots[GN_WIDTH];
-  uint filled = 0u, slot, k;
+  uint slot, k;
   if (node >= count || levels[node] != level) return;
   for (slot = 0u; slot < GN_WIDTH; ++slot) {
     const uint link = nodes[node].links[slot];
     GnSlotBox box;
-    uint place;
     if (link == GN_NONE) continue;
     if (link & GN_LEAF_LINK) {
       box = box_of_blocks(blocks, link);
     } else {
-      box = box_of_slots(nodes + link, link);
+      box = box_of_slots(nodes + link);
     }
-    box.area = gn_surface_measure(box.lo, box.hi);
-    for (place = filled; place > 0u && slots[place - 1u].area > box.area; --place) slots[place] = slots[place - 1u];
-    slots[place] = box;
-    filled += 1u;
-  }
-  for (slot = 0u; slot < filled; ++slot) {
     for (k = 0u; k < 3u; ++k) {
-      nodes[node].planes[2u * k][slot] = slots[slot].lo[k];
-      nodes[node].planes[2u * k + 1u][slot] = slots[slot].hi[k];
+      nodes[node].planes[2u * k][slot] = box.lo[k];
+      nodes[node].planes[2u * k + 1u][slot] = box.hi[k];
     }
-    nodes[node].links[slot] = slots[slot].link;
   }
 }

@@ -1,5 +1,5 @@
 // Rays through the wide tree one by one, eight boxes or eight triangles a step. Closest hit visits children by distance, any
-// hit the largest first. Hits are those of trace.cl, bit for bit.
+// hit the last slot first. Hits are those of trace.cl, bit for bit.
 // A step is short and ends with the next node's address, which nothing can foresee: a processor would wait for memory and
 // for branches it guessed wrong. So several rays take steps by turns: while one's node is on its way from memory, others
 // compute, and steps of different rays, which do not depend on each other, run side by side.
@@ -118,7 +118,7 @@ static inline void send_for(const GnWideBatch* batch, uint link) {
 }
 
 // One node or leaf. Returns 0 when the walk is over. All children met go onto the stack and the nearest, or for any hit the
-// largest, comes off again: how many they are decides no branch.
+// last, comes off again: how many they are decides no branch.
 static inline int step(GnWalker* walker, const GnWideBatch* batch, int any_hit) {
   GnWideWalk* walk = &walker->walk;
   uint height = walker->height;

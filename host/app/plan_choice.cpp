@@ -116,7 +116,7 @@ bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour) {
 }
 
 bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour) {
-  return has_slots(device, flavour) && flavour != TraceFlavour::kCompact && device.loop_limit == 0;
+  return has_slots(device, flavour) && flavour != TraceFlavour::kCompact;
 }
 
 bool takes_packets(const cl::DeviceInfo& device, TraceFlavour flavour) {
@@ -125,6 +125,8 @@ bool takes_packets(const cl::DeviceInfo& device, TraceFlavour flavour) {
 
 void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree) {
   build.fitted = true;
+  // Of parts of triangles: checks are to know, and those who read the file.
+  if (tree.tree.bvh.primitives.size() > task.scene.triangles.size()) build.options.builder = Builder::kBest;
   build.host = tree.tree.bvh;
   build.tree = upload_bvh(task.context, build.host, task.scene.triangles);
   build.hash = tree_hash(build.host);

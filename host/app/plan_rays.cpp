@@ -18,13 +18,13 @@ namespace {
 constexpr std::uint64_t kDrawnRays = 4096;
 
 // What a tree that is kept gains; else why none is.
-std::string reason_of(const Decision& decision) {
+std::string reason_of(const Decision& decision, const std::string& baseline) {
   const auto kept = std::find_if(decision.trials.begin(), decision.trials.end(),
                                  [&](const Trial& trial) { return trial.name == decision.kept; });
   if (kept == decision.trials.end() || !(kept->price > 0.0) || !(decision.baseline_cost > 0.0))
     return decision.reason;
   return fixed(100.0 * (1.0 - kept->standing.cost / kept->standing.baseline), 1) +
-         " % less work a ray than sah's, by rays drawn apart; over " +
+         " % less work a ray than " + baseline + "'s, by rays drawn apart; over " +
          compare::count_text(decision.expected) + " rays that saves " +
          compare::significant(kept->saving / kept->price) + " times what the tree takes to make";
 }
@@ -34,6 +34,7 @@ std::string reason_of(const Decision& decision) {
 const char* const kPlanHelp =
     "Trees to choose from:\n"
     "  sah        three axes, surface area, subtrees moved; near child first: the baseline\n"
+    "  best       the same over parts of the triangles that waste much: the baseline where there are any\n"
     "  sah-order  the same tree; any hit looks first where sampled rays were stopped for the least work\n"
     "  sah-mix    subtrees moved on, by surface area mixed with how the rays see boxes\n"
     "  sah-rays   and then by sampled rays\n"
@@ -42,13 +43,16 @@ const char* const kPlanHelp =
     "  light-mix  as mix, with boxes that stand along the rays: for a sun oblique to the scene; on CPUs "
     "alone\n"
     "  light-rays and then by sampled rays\n"
-    "All but sah have the learnt order for any hit. auto tries them on rays drawn apart, keeps one that is "
-    "surely 2 %\n"
-    "cheaper than sah and repays its price over the rays to come, and else keeps sah. Costs are counts, 1.0 "
-    "a box\n"
-    "and 1.2 a triangle, in the binary tree: the same plan on every machine. In the table, price is what "
-    "making the tree\n"
-    "takes beside sah, in box tests; saves is what it saves over all rays to come (--expect).\n";
+    "  best-order, best-rays  as sah-order and sah-rays, of best\n"
+    "All but sah and best have the learnt order for any hit. auto tries them on rays drawn apart, keeps one "
+    "that is surely\n"
+    "2 % cheaper than the baseline and repays its price over the rays to come, and else keeps the baseline. "
+    "Costs are counts,\n"
+    "1.0 a box and 1.2 a triangle, in the binary tree: the same plan on every machine. In the table, price "
+    "is "
+    "what making the\n"
+    "tree takes beside the baseline, in box tests; saves is what it saves over all rays to come "
+    "(--expect).\n";
 
 PlanRays rays_to_plan_for(RayKind kind, const Scene& scene, const cl::Context& context, const DeviceBvh& tree,
                           double expected, std::uint64_t seed, const Progress& progress) {
@@ -75,13 +79,14 @@ std::string plan_table(const Plan& plan) {
     return (count < 0.0 ? "-" : "") + compare::count_text(std::fabs(count));
   };
   std::string text;
+  const std::string& baseline = plan.trees.front().name;
   for (const Decision& decision : plan.decisions) {
     text += decision.rays + " rays, " + (decision.query == Query::kAny ? "any hit" : "closest hit") + ": " +
-            decision.kept + "\n  " + reason_of(decision) + "\n";
+            decision.kept + "\n  " + reason_of(decision, baseline) + "\n";
     if (decision.trials.empty()) continue;
-    Table table({"tree", "cost a ray", "of sah", "+-", "probes", "verdict", "price", "saves"});
-    table.add(
-        {"sah", fixed(decision.baseline_cost, 2), "1.000", "", std::to_string(decision.probes), "", "", ""});
+    Table table({"tree", "cost a ray", "of " + baseline, "+-", "probes", "verdict", "price", "saves"});
+    table.add({baseline, fixed(decision.baseline_cost, 2), "1.000", "", std::to_string(decision.probes), "",
+               "", ""});
     for (const Trial& trial : decision.trials) {
       const double base = trial.standing.baseline;
       const auto of_base = [&](double value) {
@@ -95,7 +100,7 @@ std::string plan_table(const Plan& plan) {
   }
   const double share = plan.baseline_units > 0.0 ? plan.planning_units / plan.baseline_units : 0.0;
   return text + "costs, prices and what is saved are in box tests\nplanning took " + fixed(share, 2) +
-         " of the work of building sah\n";
+         " of the work of building " + baseline + "\n";
 }
 
 void add_expected_rays(CLI::App& command, std::uint64_t& expected) {

@@ -145,7 +145,8 @@ std::string facts_of(const Options& options, const cl::DeviceInfo& device, const
 // A learnt order is an order of slots, which the binary tree has not.
 void check_plan(const Options& options) {
   options.plan.check();
-  if (!options.plan.asked || options.flavour != "thread" || options.plan.name == "sah") return;
+  if (!options.plan.asked || options.flavour != "thread") return;
+  if (options.plan.name == "sah" || options.plan.name == "best") return;
   throw Error(
       ErrorCode::kInvalidArgument,
       "--flavour thread looks at the nearer child first whatever was learnt; use wide, packet, compact or "

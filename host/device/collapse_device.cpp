@@ -39,7 +39,7 @@ class Collapser {
         tree_(tree),
         options_(options),
         weights_given_(weights.empty() ? 0 : 1),
-        keys_given_(slot_keys.empty() ? 0 : 1) {
+        write_keys_(slot_keys.empty() ? 1 : 0) {
     inner_count_ = tree.node_count / 2;
     limit_ = options.triangles_per_task != 0 ? options.triangles_per_task
                                              : triangles_per_task(context.device(), tree.triangle_count);
@@ -47,7 +47,8 @@ class Collapser {
     forests_ = context.create_buffer("collapse_forests", inner_count_ * sizeof(GnForest));
     no_nodes_ = context.create_buffer("no_wide_nodes", 1);
     weights_ = uploaded("node_weights", weights);
-    keys_ = uploaded("slot_keys", slot_keys);
+    keys_ = slot_keys.empty() ? context.create_buffer("slot_keys", tree.node_count * sizeof(float))
+                              : uploaded("slot_keys", slot_keys);
   }
 
   DeviceWideBvh run() {
@@ -90,9 +91,10 @@ class Collapser {
     launch("collapse: weigh", "cut_binary", 1, tree_.nodes, inner_count_, limit, tasks, top, numbers_);
     const auto found = numbers();
     launch("collapse: weigh", "weigh_subtrees", found[0], tree_.nodes, forests_, tasks, found[0],
-           options_.cost_node, options_.cost_block, weights_, weights_given_);
+           options_.cost_node, options_.cost_block, weights_, weights_given_, tree_.leaf_triangles, keys_,
+           write_keys_);
     launch("collapse: weigh", "weigh_top", 1, tree_.nodes, forests_, top, found[1], options_.cost_node,
-           options_.cost_block, weights_, weights_given_);
+           options_.cost_block, weights_, weights_given_, tree_.leaf_triangles, keys_, write_keys_);
   }
 
   DeviceWideBvh emit() {
@@ -105,22 +107,22 @@ class Collapser {
     const std::uint32_t task_count = numbers()[0];
     launch("collapse: count", "count_subtrees", task_count, tree_.nodes, forests_, tree_.leaf_triangles,
            no_nodes_, no_nodes_, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_,
-           keys_given_, tasks, task_count, opened);
+           tasks, task_count, opened);
     DeviceWideBvh wide = allocate(tasks, task_count);
     top(wide.nodes, wide.blocks, tasks, 1);
     const cl::Buffer depth = context_.create_buffer("collapse_depth", sizeof(std::uint32_t));
     context_.fill(depth, 0);
     launch("collapse: emit", "emit_subtrees", task_count, tree_.nodes, forests_, tree_.leaf_triangles,
            wide.nodes, wide.blocks, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_,
-           keys_given_, tasks, task_count, depth, opened);
+           tasks, task_count, depth, opened);
     wide.depth = std::max(numbers()[4], context_.download_values<std::uint32_t>(depth, 1).front());
     return wide;
   }
 
   void top(const cl::Buffer& nodes, const cl::Buffer& blocks, const cl::Buffer& tasks, std::uint32_t write) {
     launch("collapse: top", "emit_top", 1, tree_.nodes, forests_, tree_.leaf_triangles, nodes, blocks,
-           options_.cost_node, options_.cost_block, weights_, weights_given_, keys_, keys_given_, tasks,
-           limit_, numbers_, write);
+           options_.cost_node, options_.cost_block, weights_, weights_given_, keys_, tasks, limit_, numbers_,
+           write);
   }
 
   // The nodes and blocks that the top and all subtrees have together.
@@ -151,7 +153,7 @@ class Collapser {
   const DeviceBvh& tree_;
   const CollapseOptions& options_;
   std::uint32_t weights_given_;
-  std::uint32_t keys_given_;
+  std::uint32_t write_keys_;
   std::uint32_t inner_count_ = 0;
   std::uint32_t limit_ = 0;
   cl::StageTimes times_;

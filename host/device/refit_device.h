@@ -17,8 +17,7 @@ namespace gnomon {
 // to be used again.
 void refit_device(const cl::Context& context, DeviceBvh& tree, std::span<const Triangle> triangles);
 
-// The same for a wide tree. Its slots are in order of area again, those of equal area in the order they had,
-// so that any-hit rays find the largest where they look for it; which nodes and blocks there are stays.
+// The same for a wide tree: its slots stay where they are, learnt orders with them.
 void refit_device(const cl::Context& context, DeviceWideBvh& tree, std::span<const Triangle> triangles);
 
 }  // namespace gnomon

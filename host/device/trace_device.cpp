@@ -153,13 +153,6 @@ void Tracer::trace_binary(const DeviceBvh& tree, const TraceOptions& options) {
 void Tracer::trace_wide(const DeviceWideBvh& tree, const TraceOptions& options) {
   plan_ = std::make_unique<TracePlan>(plan_wide_trace(context_.device(), options, tree.depth));
   if (tree.frame) {
-    // Mesa 22.3 loses hits there, and we do not know why.
-    if (context_.device().loop_limit != 0) {
-      throw Error(ErrorCode::kInvalidArgument,
-                  context_.device().name +
-                      " ends loops by itself; there trees whose boxes stand in a frame of their own (a "
-                      "plan's light-space trees) are not traced, use another tree or device");
-    }
     plan_->framed = true;
     frame_ = context_.create_buffer("box_frame", sizeof(BoxFrame));
     context_.upload_values<BoxFrame>(frame_, std::span(&*tree.frame, 1));

@@ -59,14 +59,14 @@ class Chooser {
     decision_.rays = rays.name;
     decision_.query = rays.query;
     decision_.expected = rays.expected;
-    decision_.kept = "sah";
+    decision_.kept = base();
     decision_.obliquity = pool.obliquity();
   }
 
   Decision run() {
     if (options_.choice == "auto") {
       decide();
-    } else if (options_.choice == "sah") {
+    } else if (options_.choice == base()) {
       decision_.reason = "asked for";
     } else {
       take(options_.choice);
@@ -75,8 +75,10 @@ class Chooser {
   }
 
  private:
+  [[nodiscard]] const std::string& base() const { return pool_.baseline().name; }
+
   void take(const std::string& name) {
-    if (name == "sah-order" && rays_.query != Query::kAny) {
+    if (name.ends_with("-order") && rays_.query != Query::kAny) {
       decision_.reason = "an order of children serves any hit alone";
       return;
     }
@@ -107,8 +109,9 @@ class Chooser {
     const double hope = kMostSaved * options_.prices.saved * pool_.expected_cost() * rays_.expected;
     double cheapest = INFINITY;
     if (consider_frame(hope)) return;
-    for (const char* const name : {"sah-rays", "sah-order"}) {
-      if (name == std::string("sah-order") && rays_.query != Query::kAny) continue;
+    for (const char* const way : {"-rays", "-order"}) {
+      if (way == std::string("-order") && rays_.query != Query::kAny) continue;
+      const std::string name = base() + way;
       const double price = pool_.likely_price(name);
       cheapest = std::min(cheapest, price);
       if (hope > 2.0 * price && consider(name)) break;
@@ -124,6 +127,7 @@ class Chooser {
   // frame but the world's. Whether nothing else need be made.
   bool consider_frame(double hope) {
     if (!options_.light_space || decision_.obliquity < options_.least_oblique) return false;
+    if (base() == "best") return false;
     if (!(hope > 2.0 * pool_.likely_price("light-rays"))) return false;
     decision_.framed_share = pool_.framed_share();
     const bool every = rays_.query == Query::kEvery;
@@ -170,7 +174,7 @@ class Chooser {
     trial.price =
         candidate.tree.build_units + options_.prices.byte * static_cast<double>(candidate.tree.bytes);
     bool kept = false;
-    if (name == "sah-rays" && trial.fit_gain < options_.race.least_gain) {
+    if (name == base() + "-rays" && trial.fit_gain < options_.race.least_gain) {
       trial.standing.verdict = Verdict::kNotBetter;
       if (decision_.tree == 0)
         decision_.reason = "sampled rays save no more than " + percent(trial.fit_gain) + " of their own cost";
@@ -182,7 +186,7 @@ class Chooser {
       const bool better = trial.standing.verdict == Verdict::kBetter;
       kept = better && trial.saving - trial.price > most_saved_;
       decision_.probes = std::max(decision_.probes, race.rays);
-      if (kept || decision_.kept == "sah") explain(race, trial, better, kept);
+      if (kept || decision_.kept == base()) explain(race, trial, better, kept);
     }
     if (kept) forget_kept();
     if (kept || options_.keep_tried) {
@@ -267,8 +271,9 @@ class Chooser {
 }  // namespace
 
 const std::vector<std::string>& candidate_names() {
-  static const std::vector<std::string> names{"sah", "sah-order", "sah-mix",   "sah-rays",
-                                              "mix", "mix-rays",  "light-mix", "light-rays"};
+  static const std::vector<std::string> names{"sah",      "sah-order",  "sah-mix",   "sah-rays",
+                                              "best",     "best-order", "best-rays", "mix",
+                                              "mix-rays", "light-mix",  "light-rays"};
   return names;
 }
 
@@ -305,8 +310,9 @@ void PlanOptions::check() const {
     require(work >= 1.0 && std::isfinite(work), "framed_work or packet_work", std::to_string(work),
             "of finite numbers >= 1");
   race.check();
-  for (const double price : {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish,
-                             prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})
+  for (const double price :
+       {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish, prices.divide,
+        prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})
     require(price >= 0.0 && std::isfinite(price), "prices", std::to_string(price), "of finite numbers >= 0");
 }
 

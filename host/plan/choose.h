@@ -37,11 +37,12 @@ struct PlanPrices {
   double build = 38.0;            // and a triangle
   double move_start = 120'000.0;  // of reinsertion by areas, until passes end
   double move = 40.0;
-  double finish = 5.0;  // of joining leaves, a triangle
-  double turn = 9.0;    // of putting triangles in a frame, three of which are looked at, a triangle
-  double learn = 9.0;   // of learning an order of children, a triangle, beside its rays
-  double trace = 3.0;   // of a box test of a plan's own: probes and samples are traced by the reference
-  double byte = 0.05;   // of a tree that is held beside the baseline
+  double finish = 5.0;   // of joining leaves, a triangle
+  double divide = 10.0;  // of triangles into parts, a part
+  double turn = 9.0;     // of putting triangles in a frame, three of which are looked at, a triangle
+  double learn = 9.0;    // of learning an order of children, a triangle, beside its rays
+  double trace = 3.0;    // of a box test of a plan's own: probes and samples are traced by the reference
+  double byte = 0.05;    // of a tree that is held beside the baseline
   // What a unit less is worth where rays to come are traced: a device takes 2 to 3 ns for one by now, and
   // what counts save is not all saved in time (bench/results/ray-aware-time.md).
   double saved = 0.2;
@@ -92,15 +93,17 @@ struct PlanOptions {
 };
 
 // "sah": three axes, by surface area, reinsertion by surface area, near child first: the baseline.
+// "best": the same over parts of those triangles that waste much (build_options.h, kBest), where any do: the
+// baseline of "auto" there. "best-order", "best-rays": of that, as follows.
 // "sah-order": the same tree, any-hit children in the order learnt from the rays.
 // "sah-rays": reinsertion goes on by sampled rays.
 // "sah-mix": reinsertion goes on by the mixture of surface area and the rays' own measure.
 // "mix", "mix-rays": built by the mixture from the start, and then by sampled rays.
 // "light-mix", "light-rays": as "mix" and "mix-rays", their boxes in a frame along the rays; made for
 // PlanOptions::light_space alone.
-// All but "sah" have the learnt order where any hit is asked for; "sah-order" is for any hit only. "auto"
-// tries "sah-rays", and for any hit "sah-order" where that is not kept; for oblique rays "light-rays" before
-// them, and where that saves much nothing else.
+// All but "sah" and "best" have the learnt order where any hit is asked for; "sah-order" is for any hit only.
+// "auto" tries "sah-rays" ("best-rays"), and for any hit "sah-order" ("best-order") where that is not kept;
+// for oblique rays "light-rays" before them, and where that saves much nothing else.
 [[nodiscard]] const std::vector<std::string>& candidate_names();
 
 // A tree of the plan.

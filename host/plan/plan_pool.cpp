@@ -6,8 +6,10 @@
 #include "gnomon/shared/hit_math.h"
 #include "gnomon/shared/measure_math.h"
 #include "gnomon/tree/box_frame.h"
+#include "gnomon/tree/build_best_reference.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/merge_leaves.h"
+#include "gnomon/tree/parts.h"
 #include "gnomon/tree/refit.h"
 
 namespace gnomon {
@@ -28,14 +30,20 @@ std::uint64_t bytes_of(const Bvh& bvh) {
 PlanPool::PlanPool(std::span<const Triangle> triangles, const PlanOptions& options,
                    const PlanBuilder& builder)
     : triangles_(triangles), options_(options), builder_(builder) {
-  loose_baseline_ = moved(built(triangles, kSurface), kSurface);
-  baseline_ = {"sah", {merge_leaves(loose_baseline_, face_measures(loose_baseline_, kSurface)), {}}, 0.0, 0};
+  const bool best = options.choice.starts_with("best");
+  parts_ = (best || options.choice == "auto") && divides_any(triangles, kPartBudget);
+  loose_baseline_ = moved(built(triangles, kSurface, parts_), kSurface);
+  baseline_ = {parts_ || best ? "best" : "sah",
+               {merge_leaves(loose_baseline_, face_measures(loose_baseline_, kSurface)), {}},
+               0.0,
+               0};
   baseline_.bytes = bytes_of(baseline_.tree.bvh);
   baseline_units_ = build_price() + move_price() + for_all(options.prices.finish);
+  if (parts_) baseline_units_ += for_all(options.prices.divide);
 }
 
 double PlanPool::for_all(double price) const {
-  return price * static_cast<double>(triangles_.size());
+  return price * static_cast<double>(parts_ ? loose_baseline_.primitives.size() : triangles_.size());
 }
 
 double PlanPool::build_price() const {
@@ -46,8 +54,10 @@ double PlanPool::move_price() const {
   return options_.prices.move_start + for_all(options_.prices.move);
 }
 
-Bvh PlanPool::built(std::span<const Triangle> triangles, const std::array<float, 3>& weights) const {
+Bvh PlanPool::built(std::span<const Triangle> triangles, const std::array<float, 3>& weights,
+                    bool parts) const {
   BuildOptions build;
+  if (parts) build.builder = Builder::kBest;
   build.max_leaf_size = 1;  // leaves are joined at the end, when it is known what lies above them
   std::copy(weights.begin(), weights.end(), build.measure.weights);
   return builder_.build(triangles, build);
@@ -116,10 +126,10 @@ double PlanPool::expected_cost() {
 }
 
 double PlanPool::likely_price(const std::string& name) {
-  if (name == "sah") return 0.0;
+  if (name == baseline_.name) return 0.0;
   const double rays = options_.prices.trace * expected_cost() * static_cast<double>(fit_.size());
   double price = query_ == Query::kAny ? for_all(options_.prices.learn) + rays : 0.0;
-  if (name == "sah-order") return price;
+  if (name.ends_with("-order")) return price;
   price += for_all(options_.prices.finish);
   const bool light = name.starts_with("light");
   if (light && !frame_) price += for_all(options_.prices.turn);
@@ -157,9 +167,10 @@ PlanPool::Entry PlanPool::make(const std::string& name) {
   Bvh& bvh = entry.tree.tree.bvh;
   const bool light = name.starts_with("light");
   const Space space = light ? along_rays() : world();
-  if (name == "sah" || name == "sah-order") {
+  const bool as_it_is = name == baseline_.name || name.ends_with("-order");
+  if (as_it_is) {
     bvh = baseline_.tree.bvh;
-  } else if (name == "sah-rays") {
+  } else if (name == baseline_.name + "-rays") {
     fit(loose_baseline_, space, entry);
   } else {
     const bool again = name != "sah-mix";
@@ -172,12 +183,12 @@ PlanPool::Entry PlanPool::make(const std::string& name) {
       entry.tree.build_units += for_all(options_.prices.finish);
     }
   }
-  if (name != "sah" && name != "sah-order") entry.tree.bytes = bytes_of(bvh);
+  if (!as_it_is) entry.tree.bytes = bytes_of(bvh);
   entry.tree.bytes += entry.tree.tree.weights.size() * sizeof(float);
   // A tree that is not looked at any further needs no order.
-  const bool given_up =
-      options_.choice == "auto" && name == "sah-rays" && entry.fit_gain < options_.race.least_gain;
-  if (query_ == Query::kAny && name != "sah" && !given_up) learn(entry.tree, space);
+  const bool given_up = options_.choice == "auto" && name == baseline_.name + "-rays" &&
+                        entry.fit_gain < options_.race.least_gain;
+  if (query_ == Query::kAny && name != baseline_.name && !given_up) learn(entry.tree, space);
   bvh.frame = space.frame;  // last: until then triangles and rays are turned
   work_ += entry.tree.build_units;
   return entry;

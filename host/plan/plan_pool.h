@@ -13,6 +13,7 @@ class PlanPool {
   // All must outlive it.
   PlanPool(std::span<const Triangle> triangles, const PlanOptions& options, const PlanBuilder& builder);
 
+  // "sah", or "best" where spatial splits pay.
   [[nodiscard]] const PlanTree& baseline() const { return baseline_; }
   [[nodiscard]] double baseline_units() const { return baseline_units_; }
   [[nodiscard]] double work() const { return work_; }  // beyond the baseline so far, units
@@ -46,18 +47,20 @@ class PlanPool {
   };
   [[nodiscard]] Space world() const { return {triangles_, fit_, weights_}; }
   [[nodiscard]] Space along_rays();
-  [[nodiscard]] Bvh built(std::span<const Triangle> triangles, const std::array<float, 3>& weights) const;
+  [[nodiscard]] Bvh built(std::span<const Triangle> triangles, const std::array<float, 3>& weights,
+                          bool parts = false) const;
   [[nodiscard]] Bvh moved(const Bvh& bvh, const std::array<float, 3>& weights) const;
   void fit(const Bvh& from, const Space& space, Entry& entry);
   void learn(PlanTree& tree, const Space& space);
   [[nodiscard]] float own_share() const;  // of the rays' own measure in weights
   [[nodiscard]] double build_price() const;
   [[nodiscard]] double move_price() const;
-  [[nodiscard]] double for_all(double price) const;  // of one a triangle
+  [[nodiscard]] double for_all(double price) const;  // of one a triangle, or part
 
   std::span<const Triangle> triangles_;
   const PlanOptions& options_;
   const PlanBuilder& builder_;
+  bool parts_ = false;  // the baseline is of parts of triangles
   Bvh loose_baseline_;  // split to single triangles
   PlanTree baseline_;
   double baseline_units_ = 0.0;

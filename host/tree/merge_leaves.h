@@ -25,7 +25,8 @@ struct MergeOptions {
 [[nodiscard]] std::vector<float> face_measures(const Bvh& bvh, const std::array<float, 3>& face_weights);
 
 // The tree of least cost that comes of `bvh` by making leaves of inner nodes, where a node is visited as
-// often as `measures` says (one a node, any unit). Leaf order stays, nodes are numbered as builders number.
+// often as `measures` says (one a node, any unit). Leaf order stays, nodes are numbered as builders number. A
+// triangle whose parts (parts.h) meet in a joined leaf is held there once.
 // kept: receives the measures of the nodes that stay, unless null. Throws Error{kInvalidArgument}: options,
 // another number of measures than nodes.
 [[nodiscard]] Bvh merge_leaves(const Bvh& bvh, std::span<const float> measures,

@@ -1,6 +1,7 @@
 #include "gnomon/tree/parts.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "gnomon/tree/build_reference.h"
 
@@ -28,6 +29,31 @@ GnPlaneGrid grid_of(const std::vector<GnPrimitive>& boxes) {
     }
   }
   return gn_plane_grid(lo, hi);
+}
+
+// Triangles' boxes, and by what they waste which are to be divided.
+struct Weighed {
+  std::vector<GnPrimitive> boxes;
+  std::vector<std::uint32_t> bin_of;
+  GnPlaneGrid grid{};  // its floor is GN_NONE where none is
+};
+
+Weighed weigh(std::span<const GnTriangle> triangles, float budget) {
+  Weighed out;
+  out.boxes.reserve(triangles.size());
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) out.boxes.push_back(primitive_of(triangles[i], i));
+  out.grid.floor = GN_NONE;
+  if (triangles.empty()) return out;
+  out.grid = grid_of(out.boxes);
+  std::vector<std::uint32_t> bins(GN_WASTE_BINS);
+  out.bin_of.reserve(triangles.size());
+  for (std::uint32_t i = 0; i < out.boxes.size(); ++i) {
+    const GnCut cut = cut_of(triangles[i]);
+    out.bin_of.push_back(gn_waste_bin(gn_wasted_area(&cut, out.boxes[i].lo, out.boxes[i].hi)));
+    bins[out.bin_of.back()] += 1;
+  }
+  out.grid.floor = waste_floor(bins, out.grid.units, budget);
+  return out;
 }
 
 // A triangle is divided only where its box wastes so many times the scene's box over n^(2/3), about the side
@@ -83,21 +109,9 @@ std::uint32_t waste_floor(std::span<const std::uint32_t> bins, float units, floa
 }
 
 std::vector<GnPrimitive> parts_of(std::span<const GnTriangle> triangles, float budget) {
-  std::vector<GnPrimitive> boxes;
-  boxes.reserve(triangles.size());
-  for (std::uint32_t i = 0; i < triangles.size(); ++i) boxes.push_back(primitive_of(triangles[i], i));
-  if (boxes.empty()) return boxes;
-  GnPlaneGrid grid = grid_of(boxes);
-  std::vector<std::uint32_t> bins(GN_WASTE_BINS);
-  std::vector<std::uint32_t> bin_of;
-  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-    const GnCut cut = cut_of(triangles[i]);
-    const float area = gn_wasted_area(&cut, boxes[i].lo, boxes[i].hi);
-    bin_of.push_back(gn_waste_bin(area));
-    bins[bin_of.back()] += 1;
-  }
-  grid.floor = waste_floor(bins, grid.units, budget);
-  if (grid.floor == GN_NONE) return boxes;
+  Weighed weighed = weigh(triangles, budget);
+  const auto& [boxes, bin_of, grid] = weighed;
+  if (grid.floor == GN_NONE) return std::move(weighed.boxes);
   std::vector<GnPrimitive> out;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     const GnCut cut = cut_of(triangles[i]);
@@ -116,6 +130,10 @@ std::vector<GnPrimitive> parts_of(std::span<const GnTriangle> triangles, float b
     }
   }
   return out;
+}
+
+bool divides_any(std::span<const GnTriangle> triangles, float budget) {
+  return weigh(triangles, budget).grid.floor != GN_NONE;
 }
 
 }  // namespace gnomon

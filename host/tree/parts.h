@@ -17,6 +17,10 @@ namespace gnomon {
 // each of these; where dividing does not pay none is. Throws Error{kBadScene} as primitive_of.
 [[nodiscard]] std::vector<GnPrimitive> parts_of(std::span<const GnTriangle> triangles, float budget);
 
+// Whether parts_of divides any triangle: whether spatial splits pay, before anything is built. Throws
+// Error{kBadScene} as primitive_of.
+[[nodiscard]] bool divides_any(std::span<const GnTriangle> triangles, float budget);
+
 // What is divided. bins: triangles by gn_waste_bin. units: GnPlaneGrid's. Returns the grid's floor.
 [[nodiscard]] std::uint32_t waste_floor(std::span<const std::uint32_t> bins, float units, float budget);
 

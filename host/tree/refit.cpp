@@ -44,11 +44,6 @@ std::vector<std::uint32_t> from_the_root(const Bvh& bvh) {
   return order;
 }
 
-struct Slot {
-  GnPrimitive box{};
-  std::uint32_t link = GN_NONE;
-};
-
 class WideRefit {
  public:
   WideRefit(WideBvh& wide, std::span<const GnTriangle> triangles)
@@ -65,24 +60,17 @@ class WideRefit {
 
   // The box of all that is below the node. Depth is that of the tree: recursion is shallow.
   GnPrimitive node(std::uint32_t index) {
-    std::vector<Slot> slots;
     GnPrimitive whole{};
     gn_empty_box(whole.lo, whole.hi);
-    for (const std::uint32_t link : wide_.nodes[index].links) {
+    for (std::uint32_t slot = 0; slot < GN_WIDTH; ++slot) {
+      const std::uint32_t link = wide_.nodes[index].links[slot];
       if (link == GN_NONE) continue;
-      slots.push_back({(link & GN_LEAF_LINK) != 0 ? leaf(link) : node(link), link});
-      grow(whole, slots.back().box);
-    }
-    std::stable_sort(slots.begin(), slots.end(), [](const Slot& a, const Slot& b) {
-      return gn_surface_measure(a.box.lo, a.box.hi) < gn_surface_measure(b.box.lo, b.box.hi);
-    });
-    WideNode& out = wide_.nodes[index];
-    for (std::size_t slot = 0; slot < slots.size(); ++slot) {
+      const GnPrimitive box = (link & GN_LEAF_LINK) != 0 ? leaf(link) : node(link);
+      grow(whole, box);
       for (int k = 0; k < 3; ++k) {
-        out.planes[2 * k][slot] = slots[slot].box.lo[k];
-        out.planes[2 * k + 1][slot] = slots[slot].box.hi[k];
+        wide_.nodes[index].planes[2 * k][slot] = box.lo[k];
+        wide_.nodes[index].planes[2 * k + 1][slot] = box.hi[k];
       }
-      out.links[slot] = slots[slot].link;
     }
     return whole;
   }

@@ -44,9 +44,10 @@ class Collapse {
         triangles_(triangles),
         costs_{options.cost_node, options.cost_block},
         weights_{weights.data(), weights.empty() ? 0U : 1U},
-        keys_{slot_keys.data(), slot_keys.empty() ? 0U : 1U} {
+        keys_(slot_keys.begin(), slot_keys.end()) {
     forests_.resize(bvh.nodes.size() / 2);
     weigh();
+    if (slot_keys.empty()) find_keys();
   }
 
   WideBvh run() {
@@ -71,13 +72,31 @@ class Collapse {
       open.push_back(node.first);
       open.push_back(node.first + 1);
     }
-    for (auto it = inner.rbegin(); it != inner.rend(); ++it) {
-      const Node& node = bvh_.nodes[*it];
+    children_first_.assign(inner.rbegin(), inner.rend());
+    for (const std::uint32_t index : children_first_) {
+      const Node& node = bvh_.nodes[index];
       const GnForest left = forest_of(node.first);
       const GnForest right = forest_of(node.first + 1);
       forests_[(node.first - 1) / 2] =
-          gn_inner_forest(gn_node_value(bvh_.nodes.data(), *it, &weights_), &left, &right, costs_);
+          gn_inner_forest(gn_node_value(bvh_.nodes.data(), index, &weights_), &left, &right, costs_);
     }
+  }
+
+  // From what shows below each node.
+  void find_keys() {
+    keys_.resize(bvh_.nodes.size());
+    std::vector<float> shown(bvh_.nodes.size());
+    for (std::size_t i = 0; i < bvh_.nodes.size(); ++i) {
+      const Node& node = bvh_.nodes[i];
+      for (std::uint32_t at = node.first; at < node.first + node.count; ++at) {
+        const GnTriangle& triangle = triangles_[bvh_.primitives[at]];
+        shown[i] += gn_shown_area(triangle.v0, triangle.v1, triangle.v2);
+      }
+    }
+    for (const std::uint32_t index : children_first_)
+      shown[index] = shown[bvh_.nodes[index].first] + shown[bvh_.nodes[index].first + 1];
+    for (std::size_t i = 0; i < keys_.size(); ++i)
+      keys_[i] = gn_slot_key(gn_half_area(&bvh_.nodes[i]), shown[i]);
   }
 
   [[nodiscard]] GnForest forest_of(std::uint32_t node) const {
@@ -88,7 +107,7 @@ class Collapse {
   // all that is below it. Depth is that of the tree: recursion is shallow.
   void emit(std::uint32_t root, std::uint32_t place, std::uint32_t depth) {
     GnSlots slots;
-    gn_open_wide_node(bvh_.nodes.data(), forests_.data(), root, costs_, &weights_, &keys_, &slots);
+    gn_open_wide_node(bvh_.nodes.data(), forests_.data(), root, costs_, &weights_, keys_.data(), &slots);
     wide_.depth = std::max(wide_.depth, depth);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> inner;
     for (std::uint32_t slot = 0; slot < slots.count; ++slot) {
@@ -131,7 +150,8 @@ class Collapse {
   std::span<const GnTriangle> triangles_;
   GnCollapseCosts costs_;
   GnNodeValues weights_;
-  GnNodeValues keys_;
+  std::vector<float> keys_;
+  std::vector<std::uint32_t> children_first_;  // inner nodes
   std::vector<GnForest> forests_;
   WideBvh wide_;
 };

@@ -40,10 +40,10 @@ struct WideBvh {
 // Leaves of the binary tree may hold up to GN_MAX_WIDE_LEAF triangles; others make it throw
 // Error{kInvalidArgument}. Collapses with the least expected cost under the surface area heuristic (Ylitie,
 // Karras, Laine 2017). Same bytes as the device's.
-// A node's slots are in order of area, or of `slot_keys`, one a node of `bvh` (gnomon/plan/child_order.h):
-// any hit looks at the last one first. What is expected is by areas, or by `weights`, one a node: how likely
-// rays meet its box. Throws Error{kInvalidArgument} also for another number of keys or weights, a key that is
-// NaN, a weight that is not finite and >= 0.
+// A node's slots are in order of how likely what they hold stops rays (gn_slot_key), or of `slot_keys`, one a
+// node of `bvh` (gnomon/plan/child_order.h): any hit looks at the last one first. What is expected is by
+// areas, or by `weights`, one a node: how likely rays meet its box. Throws Error{kInvalidArgument} also for
+// another number of keys or weights, a key that is NaN, a weight that is not finite and >= 0.
 [[nodiscard]] WideBvh collapse_reference(const Bvh& bvh, std::span<const GnTriangle> triangles,
                                          const CollapseOptions& options = {},
                                          std::span<const float> slot_keys = {},
@@ -68,13 +68,11 @@ struct WideStats {
 
 // The first broken promise, or nothing: links in range and each node and block reached once, boxes that hold
 // their triangles and lie inside the parent's, every triangle once with its corners, empty slots inverted and
-// last, slots in order of area unless they have keys, depth. Any bytes may come in.
+// last, depth. Any bytes may come in. Not the order of slots, which is free.
 // Where triangles may be in several leaves (Builder::kBest), these need only hold all of one between them.
 enum class Repeats { kNone, kAllowed };
-enum class SlotOrder { kByArea, kByKeys };
 [[nodiscard]] std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles,
-                                                 Repeats repeats = Repeats::kNone,
-                                                 SlotOrder order = SlotOrder::kByArea);
+                                                 Repeats repeats = Repeats::kNone);
 
 // XXH3-64 of nodes and blocks, 16 hex digits.
 [[nodiscard]] std::string tree_hash(const WideBvh& wide);

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "gnomon/shared/collapse_math.h"
 #include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/cover.h"
 #include "gnomon/tree/wide.h"
@@ -53,8 +52,8 @@ bool holds(const Node& box, const float point[3]) {
 
 class Check {
  public:
-  Check(const WideBvh& wide, std::span<const GnTriangle> triangles, Repeats repeats, SlotOrder order)
-      : wide_(wide), triangles_(triangles), repeats_(repeats), slot_order_(order), boxes_(triangles.size()) {
+  Check(const WideBvh& wide, std::span<const GnTriangle> triangles, Repeats repeats)
+      : wide_(wide), triangles_(triangles), repeats_(repeats), boxes_(triangles.size()) {
     if (wide.frame) turned_ = turned(triangles, *wide.frame);
     boxed_ = wide.frame ? std::span<const GnTriangle>(turned_) : triangles;
   }
@@ -152,7 +151,6 @@ class Check {
     std::uint32_t filled = 0;
     while (filled < GN_WIDTH && node.links[filled] != GN_NONE) ++filled;
     if (filled == 0 && (index != 0 || !triangles_.empty())) return fault("slots: no child", index);
-    float area = 0.0F;
     for (std::uint32_t slot = 0; slot < GN_WIDTH; ++slot) {
       const Node box = box_of(node, slot);
       if (slot >= filled) {
@@ -161,10 +159,6 @@ class Check {
         continue;
       }
       if (!holds(box, box.lo)) return fault("box: NaN or inverted, slot " + text(slot), index);
-      const float own = gn_half_area(&box);
-      if (area > own && slot_order_ == SlotOrder::kByArea)
-        return fault("slots: slot " + text(slot) + " is smaller than the one before it", index);
-      area = own;
     }
     return std::nullopt;
   }
@@ -225,7 +219,6 @@ class Check {
   std::vector<GnTriangle> turned_;
   std::span<const GnTriangle> boxed_;  // as boxes stand
   Repeats repeats_;
-  SlotOrder slot_order_;
   TriangleBoxes boxes_;
   std::vector<char> node_seen_, block_seen_, triangle_seen_;
   std::vector<std::uint32_t> order_;
@@ -235,8 +228,8 @@ class Check {
 }  // namespace
 
 std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles,
-                                   Repeats repeats, SlotOrder order) {
-  return Check(wide, triangles, repeats, order).run();
+                                   Repeats repeats) {
+  return Check(wide, triangles, repeats).run();
 }
 
 }  // namespace gnomon

@@ -5,6 +5,7 @@
 #define GNOMON_SHARED_COLLAPSE_MATH_H
 
 #include "build_layout.h"
+#include "shown_area.h"
 #include "wide_layout.h"
 
 // Cost of one node step and of testing one block, in any unit.
@@ -20,8 +21,16 @@ GN_INLINE gn_f32 gn_half_area(GN_GLOBAL const GnNode* node) {
   return dx * (dy + dz) + dy * dz;
 }
 
-// What a caller says of each node of the binary tree instead of its area: how likely rays meet its box, or where its slot
-// is to be.
+// Where a node's slot is to be: any hit looks at those of greater keys first. A ray that meets the box is stopped the more
+// likely the more of its area triangles show, shown / (area + shown), and large boxes stop more rays: the key is this
+// share's logarithm and a quarter of the area's. As bits of floats, which rise as their logarithms do: a quotient's last
+// bit is not every device's (Ogaki, Derouet-Jourdan 2016 go by the shown area; host/notes/wide-flavour.md).
+GN_INLINE gn_f32 gn_slot_key(gn_f32 area, gn_f32 shown) {
+  const gn_i32 share = (gn_i32)gn_bits_of(shown) - (gn_i32)gn_bits_of(area + shown);
+  return (gn_f32)(share + (gn_i32)(gn_bits_of(area) >> 2));
+}
+
+// What a caller says of each node of the binary tree instead of its area: how likely rays meet its box.
 typedef struct GnNodeValues {
   GN_GLOBAL const gn_f32* of_nodes;
   gn_u32 given;  // 0: areas
@@ -116,7 +125,7 @@ GN_INLINE gn_u32 gn_leaf_triangles(gn_f32 area, const GnForest* forest, gn_f32 b
 // The children of the wide node that replaces `root`: at most eight, in order of their keys. A root that is a leaf
 // is its own only child.
 GN_INLINE void gn_open_wide_node(GN_GLOBAL const GnNode* nodes, GN_GLOBAL const GnForest* forests, gn_u32 root,
-                                 GnCollapseCosts costs, const GnNodeValues* weights, const GnNodeValues* keys,
+                                 GnCollapseCosts costs, const GnNodeValues* weights, GN_GLOBAL const gn_f32* keys,
                                  GnSlots* slots) {
   gn_u32 waiting[8], budgets[8], height = 1u;
   waiting[0] = root;
@@ -129,7 +138,7 @@ GN_INLINE void gn_open_wide_node(GN_GLOBAL const GnNode* nodes, GN_GLOBAL const 
     gn_f32 cost;
     height -= 1u;
     if (nodes[node].count > 0u) {
-      gn_enter_slot(slots, node, nodes[node].count, gn_node_value(nodes, node, keys));
+      gn_enter_slot(slots, node, nodes[node].count, keys[node]);
       continue;
     }
     if (budget < 8u) {
@@ -137,7 +146,7 @@ GN_INLINE void gn_open_wide_node(GN_GLOBAL const GnNode* nodes, GN_GLOBAL const 
       while (budget > 1u && forest.cost[budget - 1u] == forest.cost[budget - 2u]) budget -= 1u;
       if (budget == 1u) {
         const gn_f32 weight = gn_node_value(nodes, node, weights);
-        gn_enter_slot(slots, node, gn_leaf_triangles(weight, &forest, costs.block), gn_node_value(nodes, node, keys));
+        gn_enter_slot(slots, node, gn_leaf_triangles(weight, &forest, costs.block), keys[node]);
         continue;
       }
     }

@@ -7,6 +7,7 @@
 #define GNOMON_SHARED_PARTS_MATH_H
 
 #include "cost_math.h"
+#include "shown_area.h"
 
 // Parts of one triangle at most.
 #define GN_MOST_PARTS 32u
@@ -59,14 +60,7 @@ GN_INLINE GnPlaneGrid gn_plane_grid(const gn_f32* lo, const gn_f32* hi) {
 // How much larger a triangle's box is than the boxes of infinitely many parts would be together: half the surface of one,
 // and the areas that the triangle shows each axis.
 GN_INLINE gn_f32 gn_wasted_area(const GnCut* t, const gn_f32* lo, const gn_f32* hi) {
-  gn_f32 a[3], b[3], shown;
-  int k;
-  for (k = 0; k < 3; ++k) {
-    a[k] = t->corner[1][k] - t->corner[0][k];
-    b[k] = t->corner[2][k] - t->corner[0][k];
-  }
-  shown = gn_abs(a[1] * b[2] - a[2] * b[1]) + gn_abs(a[2] * b[0] - a[0] * b[2]) + gn_abs(a[0] * b[1] - a[1] * b[0]);
-  return gn_max(gn_surface_measure(lo, hi) - 0.5f * shown, 0.0f);
+  return gn_max(gn_surface_measure(lo, hi) - gn_shown_area(t->corner[0], t->corner[1], t->corner[2]), 0.0f);
 }
 
 GN_INLINE gn_u32 gn_waste_bin(gn_f32 waste) { return gn_bits_of(waste) >> GN_WASTE_SHIFT; }

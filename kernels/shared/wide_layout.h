@@ -9,7 +9,7 @@
 #define GN_WIDTH 8u
 
 // One node. planes: the boxes' lower x of all slots, upper x, lower y, upper y, lower z, upper z. A slot without a
-// child has an inverted box, which no ray meets, and a link of GN_NONE. Slots are in order of ascending surface area.
+// child has an inverted box, which no ray meets, and a link of GN_NONE. Any hit looks at the last slot first (gn_slot_key).
 typedef struct GnWideNode {
   gn_f32 planes[6][8];
   gn_u32 links[8];

@@ -94,6 +94,44 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("trees of parts are planned with where they pay, traced by every flavour, kept and read again") {
+  const std::string city = "gen:city:30k";
+  for (const std::string kind : {"bounce", "shadow"}) {
+    const std::vector<std::string> plain{"trace", city,       "--rays", kind,    "--count",
+                                         "4k",    "--repeat", "1",      "--json"};
+    const auto traced = [&](const std::vector<std::string>& more) {
+      auto arguments = plain;
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      return document_of(arguments);
+    };
+    const json before = traced({});
+    const json after = traced({"--expect", "1G"});
+    REQUIRE(after["plan"]["trees"][0]["name"] == "best");
+    REQUIRE(after["plan"]["chosen"][0]["tree"] == "best-rays");
+    REQUIRE(after["plan"]["chosen"][0]["measured_saving"] > 0.3);
+    REQUIRE(after["hits"] == before["hits"]);
+    REQUIRE(after["boxes_per_ray"] < 0.8 * before["boxes_per_ray"].get<double>());
+    if (kind == "shadow") continue;
+    for (const std::string flavour : {"wide", "packet", "compact"}) {
+      CAPTURE(flavour);
+      REQUIRE(traced({"--plan", "best-rays", "--flavour", flavour})["hits"] == before["hits"]);
+    }
+    REQUIRE(traced({"--plan", "best", "--flavour", "thread"})["hits"] == before["hits"]);
+  }
+  const program::Folder folder;
+  const std::string file = folder.file("parts.gnb");
+  const auto built = run({"build", city, "--repeat", "1", "--plan", "best-rays", "-o", file});
+  REQUIRE(built.status == 0);
+  const json checked =
+      document_of({"validate", city, "--tree", file, "--json", "--count", "300", "--max-rays", "50"});
+  REQUIRE(checked["ok"] == true);
+  const json info = document_of({"info", city, "--tree", file, "--json"});
+  REQUIRE(info["tree"]["builder"] == "best");
+  REQUIRE(info["tree"]["fitted_to_rays"] == true);
+  const auto words = run({"plan", city, "--rays", "bounce"});
+  REQUIRE_THAT(words.out, Catch::Contains("of best") && Catch::Contains("building best"));
+}
+
 TEST_CASE("options that say which tree leave no plan, and exclude one") {
   for (const std::vector<std::string>& own : std::vector<std::vector<std::string>>{
            {"--builder", "fast"}, {"--max-leaf", "4"}, {"--axes", "lsph"}}) {
@@ -190,16 +228,16 @@ TEST_CASE("a planned picture is the plain one to the last byte, by less work") {
 }
 
 TEST_CASE("plans that cannot be are refused before anything is loaded") {
-  const auto unknown = run({"trace", "no-such-file.glb", "--plan", "best"});
+  const auto unknown = run({"trace", "no-such-file.glb", "--plan", "finest"});
   CHECK(unknown.status == 2);
-  CHECK_THAT(unknown.err, Catch::Contains("best") && Catch::Contains("mix-rays"));
+  CHECK_THAT(unknown.err, Catch::Contains("finest") && Catch::Contains("mix-rays"));
   const auto thread = run({"trace", "no-such-file.glb", "--plan", "auto", "--flavour", "thread"});
   CHECK(thread.status == 2);
   CHECK_THAT(thread.err, Catch::Contains("thread"));
   const auto preview = run({"render", "no-such-file.glb", "-o", "a.png", "--plan", "mix"});
   CHECK(preview.status == 2);
   CHECK_THAT(preview.err, Catch::Contains("--samples"));
-  CHECK(run({"build", "no-such-file.glb", "--plan", "best"}).status == 2);
+  CHECK(run({"build", "no-such-file.glb", "--plan", "finest"}).status == 2);
   CHECK(run({"plan", "no-such-file.glb"}).status == 4);
   CHECK(run({"plan", "gen:cottage:8k", "--rays-in", "no-such.rays"}).status == 4);
   CHECK(run({"plan", "gen:cottage:8k", "--rays", "sideways"}).status == 2);

@@ -55,7 +55,7 @@ std::size_t require_other_trees_answers(const Triangles& triangles, const gnomon
 
 }  // namespace
 
-TEST_CASE("framed trees give other trees' bits on a small soup", "[portable][memcheck][unlimited]") {
+TEST_CASE("framed trees give other trees' bits on a small soup", "[portable][memcheck]") {
   const auto triangles = gnomon::test::soup(120, 420, 1.0F);
   const auto tree = framed_tree(triangles, {1, 1, 1});
   const Rays rays = rays_at_corners(triangles, *tree.frame, 60, 421, 2.0F);
@@ -218,14 +218,4 @@ TEST_CASE("frames go with a tree through the device, and are refused where they 
   REQUIRE_THROWS_WITH(gnomon::refit_device(context(), tree, triangles), Catch::Contains("refitting"));
   REQUIRE_THROWS_WITH(gnomon::refit_device(context(), wide, triangles), Catch::Contains("refitting"));
   REQUIRE_THROWS_WITH(gnomon::compact_device(context(), wide), Catch::Contains("compact"));
-}
-
-TEST_CASE("framed trees are refused by devices that end loops", "[portable]") {
-  const auto triangles = gnomon::test::soup(60, 451);
-  const auto tree = gnomon::upload_bvh(context(), framed_tree(triangles, {1, 2, 3}), triangles);
-  if (context().device().loop_limit != 0) {
-    REQUIRE_THROWS_WITH(gnomon::Tracer(context(), tree), Catch::Contains("ends loops"));
-  } else {
-    REQUIRE(gnomon::Tracer(context(), tree).flavour() != TraceFlavour::kThread);
-  }
 }

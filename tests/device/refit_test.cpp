@@ -78,7 +78,7 @@ TEST_CASE("a refitted tree has the boxes of its moved triangles, and its own whe
   }
 }
 
-TEST_CASE("a refitted wide tree has them too, and its slots in order of area",
+TEST_CASE("a refitted wide tree has them too",
           "[portable][unlimited][refit]") {
   for (const auto& shape : gnomon::test::wide_shapes()) {
     CAPTURE(shape.name);

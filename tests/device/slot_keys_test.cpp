@@ -24,9 +24,7 @@ TEST_CASE("with keys the device's wide trees are the reference's too, and answer
       options.triangles_per_task = task;
       const auto wide = download_wide(context(), collapse_device(context(), tree, options, nullptr, keys));
       REQUIRE(tree_hash(wide) == tree_hash(expected));
-      if (const auto fault =
-              gnomon::check_wide(wide, shape.triangles, gnomon::Repeats::kNone, gnomon::SlotOrder::kByKeys))
-        FAIL(fault->what);
+      if (const auto fault = gnomon::check_wide(wide, shape.triangles)) FAIL(fault->what);
     }
   }
   const auto triangles = gnomon::test::soup(500, 191, 1.0F);

@@ -33,7 +33,7 @@ TEST_CASE("the device's collapse has the reference's bytes, whatever the shape a
   }
 }
 
-TEST_CASE("a small collapse in many tasks keeps to its buffers", "[memcheck][unlimited]") {
+TEST_CASE("a small collapse in many tasks keeps to its buffers", "[portable][memcheck]") {
   const auto triangles = gnomon::test::soup(120, 91);
   const auto tree = gnomon::build_device(context(), triangles, gnomon::test::leaves_of(2));
   gnomon::CollapseOptions options;

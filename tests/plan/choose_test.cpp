@@ -208,9 +208,10 @@ TEST_CASE("a choice by name is kept without a test") {
     CAPTURE(name);
     options.choice = name;
     const Plan plan = gnomon::make_plan(cottage().triangles, both_kinds(1.0), options);
-    REQUIRE(plan.decisions[0].kept == (name == "sah-order" ? "sah" : name));
+    REQUIRE(plan.decisions[0].kept ==
+            (name == "sah-order" || name == "best-order" ? name.substr(0, name.size() - 6) : name));
     REQUIRE(plan.decisions[1].kept == name);
-    REQUIRE(plan.trees[plan.decisions[1].tree].tree.ranks.empty() == (name == "sah"));
+    REQUIRE(plan.trees[plan.decisions[1].tree].tree.ranks.empty() == (name == "sah" || name == "best"));
     REQUIRE(plan.decisions[1].probes == 0);
     REQUIRE(plan.trees[plan.decisions[1].tree].tree.bvh.frame.has_value() == name.starts_with("light"));
   }
@@ -218,9 +219,9 @@ TEST_CASE("a choice by name is kept without a test") {
   options.choice = "light-rays";
   REQUIRE_THROWS_WITH(gnomon::make_plan(cottage().triangles, both_kinds(1.0), options),
                       Catch::Contains("light_space"));
-  options.choice = "best";
+  options.choice = "finest";
   REQUIRE_THROWS_WITH(gnomon::make_plan(cottage().triangles, both_kinds(1.0), options),
-                      Catch::Contains("best") && Catch::Contains("mix-rays"));
+                      Catch::Contains("finest") && Catch::Contains("mix-rays"));
 }
 
 TEST_CASE("plans are the same again, and JSON tells all of them") {

@@ -2,6 +2,7 @@
 #include "gnomon/tree/merge_leaves.h"
 
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "gnomon/base/error.h"
 #include "gnomon/tree/build_reference.h"
@@ -37,9 +38,13 @@ double cost_of(const Bvh& bvh, const MergeOptions& options) {
   return sum;
 }
 
-std::uint32_t triangles_below(const Bvh& bvh, std::uint32_t node) {
-  if (bvh.nodes[node].count > 0) return bvh.nodes[node].count;
-  return triangles_below(bvh, bvh.nodes[node].first) + triangles_below(bvh, bvh.nodes[node].first + 1);
+// Each once, whether parts of it are in several leaves or not.
+std::set<std::uint32_t> triangles_below(const Bvh& bvh, std::uint32_t node) {
+  const auto& [lo, first, hi, count] = bvh.nodes[node];
+  if (count > 0) return {bvh.primitives.begin() + first, bvh.primitives.begin() + first + count};
+  std::set<std::uint32_t> out = triangles_below(bvh, first);
+  out.merge(triangles_below(bvh, first + 1));
+  return out;
 }
 
 // Of the tree whose inner nodes in `leaves` (a bit a pair) are leaves; infinite where one would be too large.
@@ -48,12 +53,20 @@ double cost_with(const Bvh& bvh, const MergeOptions& options, std::uint32_t node
   const double measure = double{gnomon::face_measures(bvh, kSurface)[node]};
   const bool closed = n.count > 0 || (leaves >> (n.first / 2) & 1U) != 0;
   if (closed) {
-    const std::uint32_t below = triangles_below(bvh, node);
+    const auto below = static_cast<std::uint32_t>(triangles_below(bvh, node).size());
     if (n.count == 0 && below > options.max_leaf_size) return INFINITY;
     return measure * double{options.cost_triangle} * below;
   }
   return measure * double{options.cost_inner} + cost_with(bvh, options, n.first, leaves) +
          cost_with(bvh, options, n.first + 1, leaves);
+}
+
+// Of all ways to join leaves.
+double least_cost(const Bvh& bvh, const MergeOptions& options) {
+  double least = INFINITY;
+  for (std::uint32_t leaves = 0; leaves < 1U << (bvh.nodes.size() / 2 + 1); ++leaves)
+    least = std::min(least, cost_with(bvh, options, 0, leaves));
+  return least;
 }
 
 }  // namespace
@@ -84,15 +97,50 @@ TEST_CASE("no way to join the leaves of a small tree costs less") {
       CAPTURE(seed, triangle);
       MergeOptions options;
       options.cost_triangle = triangle;
-      double least = INFINITY;
-      for (std::uint32_t leaves = 0; leaves < 1U << (before.nodes.size() / 2 + 1); ++leaves)
-        least = std::min(least, cost_with(before, options, 0, leaves));
       const Bvh after = merge_leaves(before, gnomon::face_measures(before, kSurface), options);
-      REQUIRE(cost_of(after, options) == Approx(least).epsilon(1e-5));
+      REQUIRE(cost_of(after, options) == Approx(least_cost(before, options)).epsilon(1e-5));
       joined += after.nodes.size() < before.nodes.size() ? 1 : 0;
     }
   }
   REQUIRE(joined > 60);
+}
+
+TEST_CASE("halves of a triangle that meet in a joined leaf are one, and no way to join leaves costs less") {
+  std::uint32_t joined = 0;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    const auto triangles = gnomon::test::soup(2 + seed % 5, 900 + seed, seed % 2 == 0 ? 2.0F : 6.0F);
+    std::vector<GnPrimitive> halves;
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+      const GnPrimitive whole = gnomon::primitive_of(triangles[i], i);
+      halves.insert(halves.end(), 2, whole);
+      const std::uint32_t axis = (seed + i) % 3;
+      const float middle = 0.5F * (whole.lo[axis] + whole.hi[axis]);
+      halves[2 * i].hi[axis] = halves[2 * i + 1].lo[axis] = middle;
+    }
+    const Bvh before =
+        gnomon::optimise_reference(gnomon::build_over_primitives(halves, triangles, single_leaves()));
+    for (const auto& [most, triangle] : {std::pair{1U, 0.3F}, {2U, 1.2F}, {4U, 3.0F}}) {
+      CAPTURE(seed, most);
+      MergeOptions options;
+      options.max_leaf_size = most;
+      options.cost_triangle = triangle;
+      const Bvh after = merge_leaves(before, gnomon::face_measures(before, kSurface), options);
+      REQUIRE(cost_of(after, options) == Approx(least_cost(before, options)).epsilon(1e-5));
+      std::size_t held = 0;
+      for (const gnomon::Node& node : after.nodes) {
+        if (node.count == 0) continue;
+        REQUIRE(node.first == held);
+        REQUIRE(node.count <= most);
+        const std::set<std::uint32_t> own(after.primitives.begin() + node.first,
+                                          after.primitives.begin() + node.first + node.count);
+        REQUIRE(own.size() == node.count);
+        held += node.count;
+      }
+      REQUIRE(held == after.primitives.size());
+      joined += after.primitives.size() < before.primitives.size() ? 1 : 0;
+    }
+  }
+  REQUIRE(joined > 40);
 }
 
 TEST_CASE("nodes that stay keep their measures") {

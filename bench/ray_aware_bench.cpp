@@ -17,9 +17,6 @@
 #include <nlohmann/json.hpp>
 
 #include "gnomon/plan/choose.h"
-#include "gnomon/scene/generators.h"
-#include "gnomon/scene/import.h"
-#include "gnomon/scene/scene.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon_commit.h"
 #include "ray_aware/set_ups.h"
@@ -32,10 +29,8 @@ using bench::RayCase;
 using nlohmann::json;
 
 struct Settings {
-  std::string configs, models, only, query;
-  std::vector<std::string> scenes{"atrium", "city", "forest", "crowd", "cottage"};
-  std::uint64_t triangles = 100'000;
-  std::uint64_t rays = 2048;
+  bench::SetUpSources sources;
+  std::string query;
   double expected = 16'777'216.0;  // 64 a pixel of 512 x 512
   PlanOptions plan;
 };
@@ -175,28 +170,6 @@ class Bench {
   Builder builder_;
 };
 
-void run_thesis(const Settings& settings) {
-  std::map<std::string, Scene> scenes;
-  for (const SetUp& set_up : read_set_ups(settings.configs)) {
-    if (is_lost(set_up.scene) || set_up.label().find(settings.only) == std::string::npos) continue;
-    const auto [at, fresh] = scenes.try_emplace(set_up.scene);
-    const std::string source = scene_source_of(set_up.scene);
-    if (fresh && !source.starts_with("gen:")) at->second = import_scene(settings.models + "/" + source);
-    if (fresh && source.starts_with("gen:"))
-      at->second = generate_scene(source.substr(4), source == "gen:random100" ? 100 : 1000, 1);
-    const AwareSetUp made = bench::thesis_set_up(set_up, at->second, settings.rays);
-    Bench(settings, made).run();
-  }
-}
-
-void run_generated(const Settings& settings) {
-  for (const std::string& name : settings.scenes) {
-    const AwareSetUp made =
-        bench::generated_set_up(name, generate_scene(name, settings.triangles, 1), settings.rays);
-    Bench(settings, made).run();
-  }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -204,15 +177,15 @@ int main(int argc, char** argv) {
   Settings settings;
   app.require_subcommand(1);
   CLI::App* const thesis = app.add_subcommand("thesis", "the thesis' set-ups");
-  thesis->add_option("--configs", settings.configs)->required();
-  thesis->add_option("--scenes", settings.models)->required();
-  thesis->add_option("--only", settings.only, "set-ups whose label has this");
+  thesis->add_option("--configs", settings.sources.configs)->required();
+  thesis->add_option("--scenes", settings.sources.models)->required();
+  thesis->add_option("--only", settings.sources.only, "set-ups whose label has this");
   CLI::App* const generated = app.add_subcommand("generated", "generated scenes");
-  generated->add_option("--scenes", settings.scenes)->delimiter(',');
-  generated->add_option("--triangles", settings.triangles);
+  generated->add_option("--scenes", settings.sources.scenes)->delimiter(',');
+  generated->add_option("--triangles", settings.sources.triangles);
   settings.plan.light_space = true;  // trees are traced by the reference
   app.add_option("--query", settings.query, "closest, any or every alone");
-  app.add_option("--rays", settings.rays, "to measure on");
+  app.add_option("--rays", settings.sources.rays, "to measure on");
   app.add_option("--expected", settings.expected, "rays that trees must repay themselves over");
   app.add_option("--fit-rays", settings.plan.fit_rays);
   app.add_option("--mixture", settings.plan.mixture_share);
@@ -224,8 +197,9 @@ int main(int argc, char** argv) {
   app.add_option("--share", settings.plan.optimise.share);
   CLI11_PARSE(app, argc, argv);
   try {
-    if (thesis->parsed()) run_thesis(settings);
-    if (generated->parsed()) run_generated(settings);
+    const auto run = [&](const AwareSetUp& made) { Bench(settings, made).run(); };
+    if (thesis->parsed()) bench::for_each_thesis_set_up(settings.sources, run);
+    if (generated->parsed()) bench::for_each_generated_set_up(settings.sources, run);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -13,11 +13,13 @@
 #include <memory>
 
 #include "contest.h"
+#include "device_builder.h"
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/trace_device.h"
 #include "gnomon/plan/choose.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon/tree/build_reference.h"
+#include "gnomon/tree/trace_wide_reference.h"
 #include "gnomon_commit.h"
 #include "paired.h"
 #include "ray_aware/set_ups.h"
@@ -52,6 +54,24 @@ Work mean_of(const std::vector<GnRayCounters>& counters) {
   }
   const auto rays = static_cast<double>(counters.size());
   return {sum.boxes / rays, sum.triangles / rays};
+}
+
+// Steps of a ray by itself in the wide tree.
+struct Steps {
+  double nodes = 0.0;
+  double blocks = 0.0;
+  double exact = 0.0;
+};
+
+Steps mean_of(const std::vector<WideSteps>& steps) {
+  Steps sum;
+  for (const WideSteps& ray : steps) {
+    sum.nodes += ray.nodes;
+    sum.blocks += ray.blocks;
+    sum.exact += ray.exact;
+  }
+  const auto rays = static_cast<double>(steps.size());
+  return {sum.nodes / rays, sum.blocks / rays, sum.exact / rays};
 }
 
 // A tree ready to be traced.
@@ -99,27 +119,34 @@ class Bench {
   void run(const std::string& scene) {
     const AwareSetUp made =
         bench::generated_set_up(scene, generate_scene(scene, settings_.triangles, 1), settings_.rays);
-    PlanBuilder builder = reference_builder();
     const Bvh plain = download_bvh(context_, build_device(context_, made.triangles));
+    std::vector<const RayCase*> cases;
+    std::vector<PlanRays> asked;
     for (const RayCase& rays : made.cases) {
       // Every box on the way is not what a tracer does.
-      if (rays.query != Query::kEvery) run_case(made, rays, plain, builder);
+      if (rays.query == Query::kEvery) continue;
+      cases.push_back(&rays);
+      asked.push_back(
+          {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, settings_.expected, rays.together});
     }
-  }
-
- private:
-  void run_case(const AwareSetUp& set_up, const RayCase& rays, const Bvh& plain, const PlanBuilder& builder) {
     PlanOptions options;
     options.keep_tried = true;
     options.light_space = true;
-    const std::vector<PlanRays> asked{
-        {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, settings_.expected}};
-    const Plan plan = make_plan(set_up.triangles, asked, options, builder);
+    options.packets = true;
+    const Plan plan = make_plan(made.triangles, asked, options, app::device_builder(context_));
+    for (std::size_t i = 0; i < cases.size(); ++i)
+      run_case(made, *cases[i], plain, plan.trees, plan.decisions[i]);
+  }
+
+ private:
+  void run_case(const AwareSetUp& set_up, const RayCase& rays, const Bvh& plain,
+                const std::vector<PlanTree>& trees, const Decision& decision) {
     std::vector<Entrant> entrants;
     entrants.emplace_back(context_, "balanced", OrderedTree{plain, {}}, set_up.triangles);
-    for (const PlanTree& tree : plan.trees)
-      entrants.emplace_back(context_, tree.name, tree.tree, set_up.triangles);
-    report(set_up, rays, entrants, time(entrants, rays), plan.decisions.front().kept);
+    entrants.emplace_back(context_, trees.front().name, trees.front().tree, set_up.triangles);
+    for (const Trial& trial : decision.trials)
+      entrants.emplace_back(context_, trial.name, trees[trial.tree].tree, set_up.triangles);
+    report(set_up, rays, entrants, time(entrants, rays), decision.kept);
   }
 
   [[nodiscard]] std::vector<std::vector<double>> time(const std::vector<Entrant>& entrants,
@@ -159,6 +186,10 @@ class Bench {
       const ReferenceTrace trace =
           trace_reference(entrants[i].tree().bvh, set_up.triangles, some, any, entrants[i].tree().ranks);
       const Work binary = mean_of(trace.counters);
+      std::vector<WideSteps> each;
+      const WideBvh wide_tree = download_wide(context_, entrants[i].wide());
+      const std::vector<Hit> hits = trace_wide_reference(wide_tree, some, any, &each).hits;
+      const Steps steps = mean_of(each);
       std::vector<double> ns;
       for (const double s : seconds[i]) ns.push_back(1e9 * s / count);
       const json row = {{"schema", 1},
@@ -180,6 +211,9 @@ class Bench {
                         {"traced_triangles_per_ray", traced.triangles},
                         {"wide_boxes_per_ray", wide.boxes},
                         {"wide_triangles_per_ray", wide.triangles},
+                        {"wide_nodes_per_ray", steps.nodes},
+                        {"wide_blocks_per_ray", steps.blocks},
+                        {"wide_exact_per_ray", steps.exact},
                         {"wide_nodes", entrants[i].wide().node_count},
                         {"wide_blocks", entrants[i].wide().block_count},
                         {"ns_per_ray", bench::spread_json(ns)},

@@ -1,11 +1,13 @@
-// Writes the page of what trees for given rays save in time, and how well time is predicted, from the rows of
-// ray_aware_time and from nothing else; or checks that the page is what the rows give.
+// Writes the page of what trees for given rays save in time, how well time is predicted, and what planning
+// takes by the clock, from the rows of ray_aware_time and plan_clock_bench and from nothing else; or checks
+// that the page is what the rows give.
 //
 //   ray_aware_time_page ROWS.jsonl PAGE.md [--check]
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -29,10 +31,17 @@ double geomean(const std::vector<double>& values) {
   return values.empty() ? 1.0 : std::exp(sum / static_cast<double>(values.size()));
 }
 
+// "1e5": a scene's triangles, roughly.
+std::string size_of(const json& row) {
+  return "1e" + number(std::log10(row.at("triangles").get<double>()), "%.0f");
+}
+
 // One scene's rays of one kind, its trees by name.
 struct Case {
-  std::string scene, rays, query;
+  std::string scene, rays, query, size;
   std::map<std::string, json> trees;
+  // "best": over parts of triangles, where there are any.
+  [[nodiscard]] const json& baseline() const { return trees.at(trees.count("best") > 0 ? "best" : "sah"); }
 };
 
 // "light" for "light 0".
@@ -41,9 +50,15 @@ std::string kind_of(const json& row) {
   return rays.substr(0, rays.find(' '));
 }
 
-// Time of a ray in nanoseconds: what any ray of its kind takes, however little it meets (rays that run apart
-// take more), and so much for each box and each triangle that the tracer tests. By least squares of relative
-// errors.
+// Whether rays of a row were traced each by itself: what the tracer tested is then what they would alone.
+bool were_alone(const json& row) {
+  const double alone = row.at("wide_boxes_per_ray");
+  return std::fabs(row.at("traced_boxes_per_ray").get<double>() - alone) <= 0.01 * alone;
+}
+
+// Time of a ray in nanoseconds: what any ray of its kind takes, however little it meets, and so much for each
+// node and each block of eight triangles that it looks into, or where rays run together for each box and each
+// triangle that they are tested against. By least squares of relative errors.
 class TimeModel {
  public:
   explicit TimeModel(const std::vector<const json*>& rows) {
@@ -62,13 +77,14 @@ class TimeModel {
     return sum;
   }
 
-  // "primary 70, a box 1.8, a triangle 0.5".
+  // "primary 70, a node 14.3, a block 21.3; together: a box 1.8, a triangle 0.5".
   [[nodiscard]] std::string words() const {
     std::string out;
     for (std::size_t i = 0; i < kinds_.size(); ++i)
       out += kinds_[i] + " " + number(weights_[i], "%.0f") + ", ";
-    return out + "a box " + number(weights_[kinds_.size()], "%.2f") + ", a triangle " +
-           number(weights_[kinds_.size() + 1], "%.2f");
+    const auto weight = [&](std::size_t i) { return number(weights_[kinds_.size() + i], "%.1f"); };
+    return out + "a node " + weight(0) + ", a block " + weight(1) + "; together: a box " + weight(2) +
+           ", a triangle " + weight(3);
   }
 
  private:
@@ -77,13 +93,16 @@ class TimeModel {
   [[nodiscard]] std::vector<double> terms_of(const json& row) const {
     std::vector<double> terms;
     for (const std::string& kind : kinds_) terms.push_back(kind == kind_of(row) ? 1.0 : 0.0);
-    terms.push_back(row.at("traced_boxes_per_ray"));
-    terms.push_back(row.at("traced_triangles_per_ray"));
+    const double alone = were_alone(row) ? 1.0 : 0.0;
+    terms.push_back(alone * row.at("wide_nodes_per_ray").get<double>());
+    terms.push_back(alone * row.at("wide_blocks_per_ray").get<double>());
+    terms.push_back((1.0 - alone) * row.at("traced_boxes_per_ray").get<double>());
+    terms.push_back((1.0 - alone) * row.at("traced_triangles_per_ray").get<double>());
     return terms;
   }
 
   [[nodiscard]] Rows normal_equations(const std::vector<const json*>& rows) const {
-    const std::size_t n = kinds_.size() + 2;
+    const std::size_t n = kinds_.size() + 4;
     Rows m(n, std::vector<double>(n + 1, 0.0));
     for (const json* const row : rows) {
       std::vector<double> terms = terms_of(*row);
@@ -161,21 +180,75 @@ struct Ratios {
   }
 };
 
+// What planning takes of the baseline's build, by families and queries.
+class PlanClock {
+ public:
+  void add(const json& row) {
+    const std::string query = row.at("query");
+    const std::string kind = query == "any" ? row.at("rays").get<std::string>() : query;
+    groups_[row.at("family").get<std::string>() + ": " + kind].push_back(row);
+  }
+
+  [[nodiscard]] std::string text() const {
+    if (groups_.empty()) return "";
+    std::string out =
+        "\n## Planning by the clock\n\nProcess CPU time of planning over that of building the baseline, "
+        "trees "
+        "built by the device; median of rounds. First without\nmaking what is kept, which a plan that is "
+        "asked for that "
+        "tree takes; then all of it. Mean over set-ups (most), those above 0.5; the same\n"
+        "by the plan's own prices.\n" +
+        page::head_of(
+            {"rays", "set-ups", "without what is kept", "above 0.5", "by prices", "all", "by prices"});
+    for (const auto& [name, rows] : groups_) {
+      std::vector<double> own, own_priced, all, all_priced;
+      for (const json& row : rows) {
+        own.push_back(median(row, "own_share"));
+        all.push_back(median(row, "share"));
+        own_priced.push_back(row.at("priced_own_share"));
+        all_priced.push_back(row.at("priced_share"));
+      }
+      const auto above = std::count_if(own.begin(), own.end(), [](double share) { return share > 0.5; });
+      out += page::line_of({name, std::to_string(rows.size()), means(own), std::to_string(above),
+                            number(mean(own_priced), "%.2f"), means(all), number(mean(all_priced), "%.2f")});
+    }
+    return out;
+  }
+
+ private:
+  static double mean(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+  }
+  static std::string means(const std::vector<double>& values) {
+    return number(mean(values), "%.2f") + " (most " +
+           number(*std::max_element(values.begin(), values.end()), "%.2f") + ")";
+  }
+
+  std::map<std::string, std::vector<json>> groups_;
+};
+
 class Page {
  public:
   explicit Page(const std::string& text) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
       const json row = json::parse(line);
-      Case& found = cases_[{row.at("query"), row.at("scene"), row.at("rays")}];
+      commit_ = row.at("commit");
+      if (row.at("bench") == "plan_clock") {
+        clock_.add(row);
+        continue;
+      }
+      Case& found = cases_[{row.at("query"), size_of(row), row.at("scene"), row.at("rays")}];
+      found.size = size_of(row);
       found.scene = row.at("scene");
       found.rays = row.at("rays");
       found.query = row.at("query");
       found.trees[row.at("tree").get<std::string>()] = row;
       different_ += row.at("different_hits").get<std::uint64_t>();
       device_ = row.at("device");
-      commit_ = row.at("commit");
-      triangles_ = std::max(triangles_, row.at("triangles").get<std::uint64_t>());
+      sizes_.insert(found.size);
       rows_ += 1;
     }
   }
@@ -190,19 +263,24 @@ class Page {
         "an order "
         "that turns; median (least–most)\nof the rounds' ratios. Counts: 1.0 a box and 1.2 a triangle in the "
         "binary "
-        "tree. sah: the plan's baseline; balanced: what is\nbuilt without a plan. Scenes of up to " +
-        std::to_string(triangles_) + " triangles. Hits that\ndiffer: " + std::to_string(different_) + ".\n";
-    for (const char* const query : {"closest", "any"}) out += savings(query);
+        "tree. sah: the plan's baseline; balanced: what is\nbuilt without a plan. Hits that differ: " +
+        std::to_string(different_) + ".\n";
+    for (const std::string& size : sizes_) {
+      for (const char* const query : {"closest", "any"}) out += savings(query, size);
+    }
     out +=
-        "\n## Time predicted\n\nNanoseconds a ray: what any ray of its kind takes, and so much a box and a "
-        "triangle "
-        "that the tracer tests, by least squares of\nrelative errors over all rows of a query. Other scenes: "
-        "each "
-        "scene by what was fitted to all others. Counts alone: one factor.\nCells: correlation, mean "
-        "error.\n\n| "
+        "\n## Time predicted\n\nNanoseconds a ray: what any ray of its kind takes, and so much a node and a "
+        "block of "
+        "eight triangles that it looks into; where rays run\ntogether and tests are shared, so much a box "
+        "and a "
+        "triangle. By least squares of relative errors over all rows of a query. Other\nscenes: each scene "
+        "by "
+        "what was fitted to all others. Counts alone: one factor. Cells: correlation, mean error.\n\n| "
         "query | rows | ns | fitted | other scenes | counts alone |\n|---|---|---|---|---|---|\n";
-    for (const char* const query : {"closest", "any"}) out += prediction(query);
-    return out;
+    for (const std::string& size : sizes_) {
+      for (const char* const query : {"closest", "any"}) out += prediction(query, size);
+    }
+    return out + clock_.text();
   }
 
  private:
@@ -212,17 +290,17 @@ class Page {
            number(s.at("max"), "%.2f") + ")";
   }
 
-  [[nodiscard]] std::string savings(const std::string& query) const {
-    std::string out =
-        "\n## " + std::string(query == "any" ? "Any hit" : "Closest hit") +
-        "\n\n| scene, rays | kept | counts of sah | time of sah | counts of balanced | time of balanced "
-        "|\n|---|---|---|---|---|---|\n";
+  [[nodiscard]] std::string savings(const std::string& query, const std::string& size) const {
+    std::string out = "\n## " + std::string(query == "any" ? "Any hit" : "Closest hit") + ", " + size +
+                      " triangles\n\n| scene, rays | kept | counts of sah | time of sah | counts of balanced "
+                      "| time of balanced "
+                      "|\n|---|---|---|---|---|---|\n";
     Ratios of_sah, of_balanced;
     for (const auto& [key, c] : cases_) {
-      if (c.query != query) continue;
-      const std::string kept = c.trees.at("sah").at("kept");
+      if (c.query != query || c.size != size) continue;
+      const std::string kept = c.baseline().at("kept");
       const json& own = c.trees.at(kept);
-      of_sah.add(own, c.trees.at("sah"), "time_of_sah");
+      of_sah.add(own, c.baseline(), "time_of_sah");
       of_balanced.add(own, c.trees.at("balanced"), "time_of_balanced");
       out += "| " + c.scene + ", " + c.rays + " | " + kept + " | " + number(of_sah.counts.back(), "%.3f") +
              " | " + spread(own, "time_of_sah") + " | " + number(of_balanced.counts.back(), "%.3f") + " | " +
@@ -233,12 +311,16 @@ class Page {
            of_balanced.share() + " against balanced.\n";
   }
 
-  [[nodiscard]] std::string prediction(const std::string& query) const {
+  // Of one size: what lies in no near cache takes longer.
+  [[nodiscard]] std::string prediction(const std::string& query, const std::string& size) const {
     std::vector<const json*> all;
+    std::set<std::string> scenes;
     for (const auto& [key, c] : cases_) {
-      if (c.query != query) continue;
+      if (c.query != query || c.size != size) continue;
+      scenes.insert(c.scene);
       for (const auto& [name, row] : c.trees) all.push_back(&row);
     }
+    if (scenes.size() < kFewestScenes) return "";
     const TimeModel model(all);
     std::vector<double> fitted, elsewhere, wanted, costs;
     for (const json* const row : all) {
@@ -255,7 +337,8 @@ class Page {
     for (std::size_t i = 0; i < costs.size(); ++i)
       factor += wanted[i] / costs[i] / static_cast<double>(costs.size());
     for (double& cost : costs) cost *= factor;
-    std::string out = "| " + query + " | " + std::to_string(all.size()) + " | " + model.words() + " |";
+    std::string out =
+        "| " + query + ", " + size + " | " + std::to_string(all.size()) + " | " + model.words() + " |";
     for (const auto* const values : {&fitted, &elsewhere, &costs}) {
       const Quality quality = quality_of(*values, wanted);
       out += std::string(" ") + number(quality.correlation, "%.3f") + ", " +
@@ -264,10 +347,13 @@ class Page {
     return out + "\n";
   }
 
-  std::map<std::array<std::string, 3>, Case> cases_;
+  static constexpr std::size_t kFewestScenes = 3;  // that tell what others take
+
+  std::map<std::array<std::string, 4>, Case> cases_;
+  std::set<std::string> sizes_;
+  PlanClock clock_;
   std::string commit_, device_;
   std::uint64_t different_ = 0;
-  std::uint64_t triangles_ = 0;
   std::size_t rows_ = 0;
 };
 

@@ -5,7 +5,7 @@
 # New rows go to build/rows/NAME.jsonl. To keep them: cat build/rows/NAME.jsonl >> bench/results/NAME.jsonl, then
 # bench/figures.sh. Leave the machine alone meanwhile. GNOMON_DEVICE chooses another device,
 # GNOMON_DEVICES those of "devices". The thesis' set-ups, which
-# reproduce and exit_rule need, are named by THESIS_CONFIGS, THESIS_SCENES and THESIS_PUBLISHED.
+# reproduce, exit_rule, ray_aware and ray_aware_time need, are named by THESIS_CONFIGS, THESIS_SCENES and THESIS_PUBLISHED.
 set -euo pipefail
 [[ " $* " != *" --help "* ]] || { sed -n '2,/^set /s/^# \{0,1\}//p' "$0"; exit; }
 cd "$(dirname "$0")/.."
@@ -44,7 +44,13 @@ take_ray_aware() {
     --scenes "${THESIS_SCENES:?a folder}"
   "$build/bench/ray_aware_bench" generated
 }
-take_ray_aware_time() { "$build/bench/ray_aware_time"; }
+take_ray_aware_time() {
+  "$build/bench/ray_aware_time"
+  "$build/bench/ray_aware_time" --scenes city,forest --triangles 1000000 --rays 16384
+  "$build/bench/plan_clock_bench" thesis --configs "${THESIS_CONFIGS:?the set-ups, a JSON file}" \
+    --scenes "${THESIS_SCENES:?a folder}"
+  "$build/bench/plan_clock_bench" generated
+}
 take_reproduce() {
   gnomon reproduce --configs "${THESIS_CONFIGS:?the set-ups, a JSON file}" --scenes "${THESIS_SCENES:?a folder}" \
     --published "${THESIS_PUBLISHED:?the published results, a CSV file}" --rows /dev/fd/3 3>&1 >/dev/null

@@ -1,6 +1,6 @@
-// The last step of a packet's closest hits: the exact t, u and v of what floats found. Where the device has double,
+// The last step of closest hits: the exact t, u and v of what floats found. Where the device has double,
 // eight at once: rays hand in theirs, and every eighth works them out, with the operations of gn_triangle_resolve in
-// its order, so bit for bit as one by one. Feeds trace_packet.cl.
+// its order, so bit for bit as one by one. Feeds wide_walk.h, trace_packet.cl.
 #ifndef GNOMON_SETTLE_H
 #define GNOMON_SETTLE_H
 

@@ -3,7 +3,6 @@
 // trace_wide.cl.
 // Options: those of wide_walk.h, GN_RAYS_PER_ITEM.
 #include "packet_walk.h"
-#include "settle.h"
 
 #ifndef GN_RAYS_PER_ITEM
 #define GN_RAYS_PER_ITEM 64
@@ -83,9 +82,9 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const GnT
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
   const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
   const float size = GN_SCENE_SIZE(nodes);
-  const GnWideBatch batch = {nodes, blocks, rays, hits, 0, invalid_rays, counters GN_FRAME_OF_BATCH};
   GnPacket packet;
   GnFound found;
+  const GnWideBatch batch = {nodes, blocks, rays, hits, 0, invalid_rays, counters, &found GN_FRAME_OF_BATCH};
   GN_FRAME_OF_PACKET(packet)
   found.count = 0u;
   while (index < end) {
@@ -108,7 +107,7 @@ __kernel void trace_any(__global const GnWideNode* nodes, __global const GnTrian
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
   const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
   const float size = GN_SCENE_SIZE(nodes);
-  const GnWideBatch batch = {nodes, blocks, rays, 0, occluded, invalid_rays, counters GN_FRAME_OF_BATCH};
+  const GnWideBatch batch = {nodes, blocks, rays, 0, occluded, invalid_rays, counters, 0 GN_FRAME_OF_BATCH};
   GnPacket packet;
   GN_FRAME_OF_PACKET(packet)
   while (index < end) {

@@ -27,14 +27,14 @@
 
 typedef struct GnWideRay {
   GnRayFrame frame;  // what triangles are tested with; all else is for boxes
-  float8 origin[3];
+  float origin[3];
 #if GN_FRAME
-  float8 far_origin[3];
+  float far_origin[3];
 #endif
-  float8 inverse[3];
-  float8 far_inverse[3];  // a little larger: far sides are never taken for nearer than they are
+  float inverse[3];
+  float far_inverse[3];   // a little larger: far sides are never taken for nearer than they are
   uint near_side[3];      // byte offset of the planes met first, per axis
-  float8 far_margin;      // added to far sides: 0 unless tmin is negative
+  float far_margin;       // added to far sides: 0 unless tmin is negative
   float tmin;
   float tmax;
 } GnWideRay;
@@ -54,36 +54,35 @@ typedef struct GnWideWalk {
   uint triangles;
 } GnWideWalk;
 
+// Written where it stays: what is made beside it and copied waits until all its parts are stored.
 #if GN_FRAME
 #define GN_FAR_ORIGIN(ray, k) (ray)->far_origin[k]
-static inline GnWideRay wide_ray(const GnRay* ray, __global const GnBoxFrame* boxes) {
+static inline void set_wide_ray(GnWideRay* out, const GnRay* ray, __global const GnBoxFrame* boxes) {
   const GnBoxRay turned = gn_box_ray(boxes, ray);
 #else
 #define GN_FAR_ORIGIN(ray, k) (ray)->origin[k]
-static inline GnWideRay wide_ray(const GnRay* ray) {
+static inline void set_wide_ray(GnWideRay* out, const GnRay* ray) {
 #endif
-  GnWideRay out;
   uint k;
-  out.frame = gn_ray_frame(ray);
+  out->frame = gn_ray_frame(ray);
   for (k = 0u; k < 3u; ++k) {
 #if GN_FRAME
     const float inverse = turned.inverse[k];
-    out.origin[k] = (float8)(turned.near_origin[k]);
-    out.far_origin[k] = (float8)(turned.far_origin[k]);
+    out->origin[k] = turned.near_origin[k];
+    out->far_origin[k] = turned.far_origin[k];
 #else
-    const float inverse = out.frame.inverse[k];
-    out.origin[k] = (float8)(ray->origin[k]);
+    const float inverse = out->frame.inverse[k];
+    out->origin[k] = ray->origin[k];
 #endif
     const uint backwards = inverse < 0.0f;
-    out.inverse[k] = (float8)(inverse);
-    out.far_inverse[k] = (float8)(gn_slab_limit(gn_abs(inverse)) * (backwards ? -1.0f : 1.0f));
-    out.near_side[k] = 64u * k + 32u * backwards;
+    out->inverse[k] = inverse;
+    out->far_inverse[k] = gn_slab_limit(gn_abs(inverse)) * (backwards ? -1.0f : 1.0f);
+    out->near_side[k] = 64u * k + 32u * backwards;
   }
   // The larger reciprocal makes a negative distance too small; those that matter are no less than tmin.
-  out.far_margin = (float8)(ray->tmin < 0.0f ? -4.0f * GN_SLAB_SLACK * ray->tmin : 0.0f);
-  out.tmin = ray->tmin;
-  out.tmax = ray->tmax;
-  return out;
+  out->far_margin = ray->tmin < 0.0f ? -4.0f * GN_SLAB_SLACK * ray->tmin : 0.0f;
+  out->tmin = ray->tmin;
+  out->tmax = ray->tmax;
 }
 
 // Below infinity, where empty slots begin and gn_box_entry puts boxes that are missed: a tmin of -infinity makes far

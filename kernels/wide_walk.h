@@ -10,7 +10,7 @@
 #define GNOMON_WIDE_WALK_H
 
 #include "ahead.h"
-#include "wide_leaf.h"
+#include "settle.h"
 
 #ifndef GN_WIDE_STACK
 #define GN_WIDE_STACK 256
@@ -18,6 +18,9 @@
 #ifndef GN_RAYS_AT_ONCE
 #define GN_RAYS_AT_ONCE 1
 #endif
+
+// Whether what floats found is handed in, to be worked out eight rays at once (settle.h).
+#define GN_HAND_IN (GN_HAS_FP64 && !GN_FAST)
 
 #define GN_PLANES(node, offset) (*(__global const float8*)((__global const char*)(node) + (offset)))
 
@@ -27,9 +30,10 @@ static inline uint boxes_met(const GnWideRay* ray, __global const GnWideNode* no
   const float8 near_x = (GN_PLANES(node, x) - ray->origin[0]) * ray->inverse[0];
   const float8 near_y = (GN_PLANES(node, y) - ray->origin[1]) * ray->inverse[1];
   const float8 near_z = (GN_PLANES(node, z) - ray->origin[2]) * ray->inverse[2];
-  const float8 far_x = fma(GN_PLANES(node, x ^ 32u) - GN_FAR_ORIGIN(ray, 0), ray->far_inverse[0], ray->far_margin);
-  const float8 far_y = fma(GN_PLANES(node, y ^ 32u) - GN_FAR_ORIGIN(ray, 1), ray->far_inverse[1], ray->far_margin);
-  const float8 far_z = fma(GN_PLANES(node, z ^ 32u) - GN_FAR_ORIGIN(ray, 2), ray->far_inverse[2], ray->far_margin);
+  const float8 margin = (float8)(ray->far_margin);
+  const float8 far_x = fma(GN_PLANES(node, x ^ 32u) - GN_FAR_ORIGIN(ray, 0), (float8)(ray->far_inverse[0]), margin);
+  const float8 far_y = fma(GN_PLANES(node, y ^ 32u) - GN_FAR_ORIGIN(ray, 1), (float8)(ray->far_inverse[1]), margin);
+  const float8 far_z = fma(GN_PLANES(node, z ^ 32u) - GN_FAR_ORIGIN(ray, 2), (float8)(ray->far_inverse[2]), margin);
   float8 near = GN_MAX8(near_x, (float8)ray->tmin);
   float8 far = GN_MIN8(far_x, (float8)limit);
   near = GN_MAX8(near_y, near);
@@ -89,6 +93,7 @@ typedef struct GnWideBatch {
   __global uint* occluded;
   volatile __global uint* invalid_rays;
   __global GnRayCounters* counters;
+  GnFound* found;  // hits that are not worked out yet
 #if GN_FRAME
   __global const GnBoxFrame* boxes;
 #endif
@@ -98,11 +103,11 @@ typedef struct GnWideBatch {
 #if GN_FRAME
 #define GN_FRAME_PARAMETER , __global const GnBoxFrame* boxes
 #define GN_FRAME_OF_BATCH , boxes
-#define GN_TAKE_RAY(ray, batch) wide_ray(ray, (batch)->boxes)
+#define GN_TAKE_RAY(out, ray, batch) set_wide_ray(out, ray, (batch)->boxes)
 #else
 #define GN_FRAME_PARAMETER
 #define GN_FRAME_OF_BATCH
-#define GN_TAKE_RAY(ray, batch) wide_ray(ray)
+#define GN_TAKE_RAY(out, ray, batch) set_wide_ray(out, ray)
 #endif
 
 static inline void send_for(const GnWideBatch* batch, uint link) {
@@ -149,6 +154,9 @@ static inline void hand_over(GnWalker* walker, const GnWideBatch* batch, int any
   const GnHit* best = &walker->walk.best;
   if (any_hit) {
     batch->occluded[index] = walker->walk.found;
+  } else if (GN_HAND_IN && walker->walk.pending) {
+    const uint block = (uint)(walker->walk.pending_block - batch->blocks);
+    hand_in(batch->found, index, GN_WIDTH * block + walker->walk.pending_lane, batch->blocks, batch->rays, batch->hits);
   } else {
     settle(&walker->walk, &walker->ray);
     batch->hits[index] = (float4)(best->t, best->u, best->v, as_float(best->primitive));
@@ -167,7 +175,7 @@ static inline uint take_up(GnWalker* walker, const GnWideBatch* batch, uint inde
   walker->current = 0u;
   walker->height = 0u;
   if (gn_ray_is_valid(&ray)) {
-    walker->ray = GN_TAKE_RAY(&ray, batch);
+    GN_TAKE_RAY(&walker->ray, &ray, batch);
     return 1u;
   }
   atomic_inc(batch->invalid_rays);

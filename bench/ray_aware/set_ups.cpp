@@ -1,11 +1,14 @@
 #include "set_ups.h"
 
 #include <algorithm>
+#include <map>
 
 #include "gnomon/areas/area_rays.h"
 #include "gnomon/areas/areas_from_scene.h"
 #include "gnomon/areas/membership.h"
 #include "gnomon/measure/reproduce.h"
+#include "gnomon/scene/generators.h"
+#include "gnomon/scene/import.h"
 #include "gnomon/scene/ray_set.h"
 #include "gnomon/tree/build_reference.h"
 
@@ -115,6 +118,7 @@ AwareSetUp generated_set_up(const std::string& name, const Scene& scene, std::ui
   const Sight sight(scene);
   add_case(out, "primary", Query::kClosest, rays,
            [&](std::uint64_t count, std::uint64_t seed) { return primary_rays(scene, count, seed); });
+  out.cases.back().together = true;
   add_case(out, "bounce", Query::kClosest, rays, [&](std::uint64_t count, std::uint64_t seed) {
     return thinned(
         sight.from(2 * count, seed, [&](const auto&... seen) { return bounce_rays(scene, seen...); }), count);
@@ -123,10 +127,13 @@ AwareSetUp generated_set_up(const std::string& name, const Scene& scene, std::ui
     return thinned(
         sight.from(4 * count, seed, [&](const auto&... seen) { return shadow_rays(scene, seen...); }), count);
   };
+  const std::size_t before = out.cases.size();
   add_case(out, "shadow", Query::kAny, rays, shadow);
   add_case(out, "lit", Query::kAny, rays, [&](std::uint64_t count, std::uint64_t seed) {
     return thinned(sight.unstopped(shadow(4 * count, seed)), count);
   });
+  for (std::size_t i = before; i < out.cases.size(); ++i)
+    out.cases[i].together = run_together(RayKind::kShadow, scene);
   std::size_t lights = 0;
   for (const LightArea& light : areas_of_lights(scene)) {
     if (++lights > 2) break;
@@ -139,6 +146,24 @@ AwareSetUp generated_set_up(const std::string& name, const Scene& scene, std::ui
     add_case(out, "light " + std::to_string(light.light), Query::kEvery, rays, of_light);
   }
   return out;
+}
+
+void for_each_thesis_set_up(const SetUpSources& sources, const VisitSetUp& visit) {
+  std::map<std::string, Scene> scenes;
+  for (const SetUp& set_up : read_set_ups(sources.configs)) {
+    if (is_lost(set_up.scene) || set_up.label().find(sources.only) == std::string::npos) continue;
+    const auto [at, fresh] = scenes.try_emplace(set_up.scene);
+    const std::string source = scene_source_of(set_up.scene);
+    if (fresh && !source.starts_with("gen:")) at->second = import_scene(sources.models + "/" + source);
+    if (fresh && source.starts_with("gen:"))
+      at->second = generate_scene(source.substr(4), source == "gen:random100" ? 100 : 1000, 1);
+    visit(thesis_set_up(set_up, at->second, sources.rays));
+  }
+}
+
+void for_each_generated_set_up(const SetUpSources& sources, const VisitSetUp& visit) {
+  for (const std::string& name : sources.scenes)
+    visit(generated_set_up(name, generate_scene(name, sources.triangles, 1), sources.rays));
 }
 
 }  // namespace gnomon::bench

@@ -1,6 +1,6 @@
-// The rays of ray_aware_bench: the thesis' set-ups, and generated scenes with their cameras and lights. Every
-// kind of rays is drawn three times with different seeds: to fit to, to choose by, to measure. Feeds
-// ray_aware_bench.cpp.
+// The rays of ray_aware_bench and plan_clock_bench: the thesis' set-ups, and generated scenes with their
+// cameras and lights. Every kind of rays is drawn three times with different seeds: to fit to, to choose by,
+// to measure. Feeds those and ray_aware_time.cpp.
 #pragma once
 
 #include <functional>
@@ -24,6 +24,7 @@ struct RayCase {
   std::string rays;  // "area", "primary", "bounce", "shadow", "lit", "light 0"
   Query query = Query::kClosest;
   Draws draws;
+  bool together = false;  // PlanRays'
 };
 
 // Triangles and what is asked of them.
@@ -41,5 +42,18 @@ struct AwareSetUp {
 // A generated scene: primary, bounce and shadow rays, those that nothing stops, and rays of up to two lights'
 // areas.
 [[nodiscard]] AwareSetUp generated_set_up(const std::string& name, const Scene& scene, std::uint64_t rays);
+
+// Where set-ups come from.
+struct SetUpSources {
+  std::string configs, models;  // the thesis': a JSON file, a folder; none are read without
+  std::string only;             // of these those whose label has this
+  std::vector<std::string> scenes{"atrium", "city", "forest", "crowd", "cottage"};  // generated
+  std::uint64_t triangles = 100'000;
+  std::uint64_t rays = 2048;  // to measure on
+};
+
+using VisitSetUp = std::function<void(const AwareSetUp& set_up)>;
+void for_each_thesis_set_up(const SetUpSources& sources, const VisitSetUp& visit);
+void for_each_generated_set_up(const SetUpSources& sources, const VisitSetUp& visit);
 
 }  // namespace gnomon::bench

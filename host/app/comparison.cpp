@@ -5,6 +5,7 @@
 #include <iterator>
 #include <memory>
 
+#include "device_builder.h"
 #include "device_choice.h"
 #include "document.h"
 #include "embree_methods.h"
@@ -13,7 +14,6 @@
 #include "gnomon/compare/analysis.h"
 #include "gnomon/scene/write_file.h"
 #include "numbers.h"
-#include "plan_rays.h"
 #include "report_files.h"
 #include "version.h"
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 
+#include "device_builder.h"
 #include "gnomon/compare/words.h"
 #include "numbers.h"
 #include "options.h"
-#include "plan_rays.h"
 
 namespace gnomon::app {
 namespace {
@@ -102,6 +102,7 @@ PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Pro
   PlanOptions how;
   how.choice = request.name;
   how.light_space = task.light_space;
+  how.packets = task.packets;
   const std::vector<PlanRays> rays = task.draw();
   out.plan = make_plan(task.scene.triangles, rays, how, device_builder(task.context), progress);
   out.chosen = choose_trees(*out.plan, rays, task.scene.triangles, task.plain.host, task.wanted, !by_name);
@@ -116,6 +117,10 @@ bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour) {
 
 bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour) {
   return has_slots(device, flavour) && flavour != TraceFlavour::kCompact;
+}
+
+bool takes_packets(const cl::DeviceInfo& device, TraceFlavour flavour) {
+  return takes_frames(device, flavour) && flavour != TraceFlavour::kWide;
 }
 
 void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree) {

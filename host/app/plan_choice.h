@@ -56,6 +56,7 @@ struct PlanTask {
   std::function<std::vector<PlanRays>()> draw;
   TreesWanted wanted = TreesWanted::kOneEach;
   bool light_space = false;  // the tracer takes trees whose boxes stand along the rays
+  bool packets = false;      // and rays that run together in packets
 };
 
 // Plans where that can pay, or must since a tree was asked for by name. With auto what is kept costs probes
@@ -70,6 +71,9 @@ struct PlanTask {
 
 // Whether a tracer of this flavour takes trees whose boxes stand along the rays: wide or packet.
 [[nodiscard]] bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour);
+
+// Whether it takes rays that run together in packets.
+[[nodiscard]] bool takes_packets(const cl::DeviceInfo& device, TraceFlavour flavour);
 
 // Makes `build` be of this tree: what took how long stays the plain tree's.
 void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree);

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "commands.h"
+#include "device_builder.h"
 #include "device_choice.h"
 #include "document.h"
 #include "interrupt.h"
@@ -52,6 +53,7 @@ int run(const Options& options, Console& console) {
   stop_if_interrupted();
   PlanOptions how = options.plan;
   how.light_space = takes_frames(context.device(), TraceFlavour::kAuto);
+  how.packets = takes_packets(context.device(), TraceFlavour::kAuto);
   const Plan plan = make_plan(scene.triangles, rays, how, device_builder(context), console.progress());
   stop_if_interrupted();
   Json document = start_document("plan");

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "gnomon/compare/words.h"
-#include "gnomon/device/optimise_device.h"
 #include "gnomon/device/trace_device.h"
 #include "numbers.h"
 #include "options.h"
@@ -55,23 +54,6 @@ const char* const kPlanHelp =
     "tree takes beside the baseline, in box tests; saves is what it saves over all rays to come "
     "(--expect).\n";
 
-PlanBuilder device_builder(const cl::Context& context) {
-  PlanBuilder out;
-  // Triangles go to the device again with each tree: plans make a handful.
-  out.build = [&context](std::span<const Triangle> triangles, const BuildOptions& options) {
-    return download_bvh(context, build_device(context, triangles, options));
-  };
-  out.optimise = [&context](const Bvh& bvh, const OptimiseOptions& options) {
-    if (bvh.nodes.empty()) return bvh;
-    // Reinsertion reads boxes and leaf order; corners it only carries along.
-    std::size_t most = 0;
-    for (const std::uint32_t primitive : bvh.primitives) most = std::max<std::size_t>(most, primitive + 1);
-    const std::vector<Triangle> corners(most);
-    return download_bvh(context, optimise_device(context, upload_bvh(context, bvh, corners), options));
-  };
-  return out;
-}
-
 PlanRays rays_to_plan_for(RayKind kind, const Scene& scene, const cl::Context& context, const DeviceBvh& tree,
                           double expected, std::uint64_t seed, const Progress& progress) {
   const Tracer tracer(context, tree);
@@ -81,6 +63,7 @@ PlanRays rays_to_plan_for(RayKind kind, const Scene& scene, const cl::Context& c
   out.fit = make_rays(kind, scene, tracer, kDrawnRays, seed + 1, progress);
   out.probe = make_rays(kind, scene, tracer, kDrawnRays, seed + 2, progress);
   out.expected = expected;
+  out.together = run_together(kind, scene);
   return out;
 }
 

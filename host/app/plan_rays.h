@@ -1,4 +1,4 @@
-// The rays a plan is made for, and the plan made with a device: what `plan` and --plan share.
+// The rays a plan is made for, and what it says: what `plan` and --plan share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,9 +11,6 @@
 #include "gnomon/scene/ray_set.h"
 
 namespace gnomon::app {
-
-// Trees built and optimised on the device: the bytes of reference_builder(). The context must outlive it.
-[[nodiscard]] PlanBuilder device_builder(const cl::Context& context);
 
 // Rays of a kind that a scene's camera and lights give: fitted to those of seed + 1, judged by those of seed
 // + 2, so that neither are the rays of `seed`. `tree` finds where rays start that need hits.

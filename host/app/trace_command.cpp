@@ -187,7 +187,8 @@ PlanTask plan_task(const Options& options, const cl::Context& context, const Sce
           counted,
           draw,
           TreesWanted::kOneEach,
-          takes_frames(context.device(), flavour_from(options.flavour))};
+          takes_frames(context.device(), flavour_from(options.flavour)),
+          takes_packets(context.device(), flavour_from(options.flavour))};
 }
 
 int run(const Options& options, Console& console) {

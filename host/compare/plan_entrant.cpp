@@ -27,6 +27,7 @@ class PlanEntrant : public Entrant {
       throw Error(ErrorCode::kInvalidArgument, "the scene has no rays of these kinds to plan for");
     PlanOptions how;
     how.light_space = traces_wide(context_.device()) && context_.device().loop_limit == 0;
+    how.packets = how.light_space;
     plan_ = make_plan(scene_.triangles, rays, how, builder_, progress);
     for (const PlanTree& kept : plan_.trees)
       trees_.emplace_back(context_, upload_bvh(context_, kept.tree.bvh, scene_.triangles),
@@ -107,6 +108,7 @@ RaysToPlan drawn_for(const Scene& scene, const PlanSource& source) {
       rays.name = kind;
       rays.query = is_any_hit(kind) ? Query::kAny : Query::kClosest;
       rays.expected = kPlannedRays;
+      if (const auto known = ray_kind_from(kind)) rays.together = run_together(*known, scene);
       rays.fit = draw_rays(scene, closest, kind, kDrawnRays, source.seed + 1);
       rays.probe = draw_rays(scene, closest, kind, kDrawnRays, source.seed + 2);
       if (rays.fit.empty()) continue;

@@ -17,6 +17,12 @@ namespace {
 // made.
 constexpr double kMostSaved = 0.5;
 
+// Where boxes along the rays save so much of the baseline's cost no other tree is made beside.
+constexpr double kSavedEnough = 0.15;
+
+// Probes that tell whether boxes in a frame can pay at all.
+constexpr std::size_t kFramedProbes = 64;
+
 void require(bool ok, const std::string& option, const std::string& value, const std::string& range) {
   if (ok) return;
   throw Error(ErrorCode::kInvalidArgument,
@@ -92,8 +98,8 @@ class Chooser {
     return trees_.size() - 1;
   }
 
-  // One candidate after the other, the best first, until one is kept, and then boxes along the rays; none is
-  // made that could not repay itself.
+  // One candidate after the other until one is kept, boxes along the rays before all others; none is made
+  // that could not repay itself.
   void decide() {
     if (probes_.size() < options_.race.least || rays_.fit.empty()) {
       decision_.reason = "too few rays to judge by: " + std::to_string(probes_.size()) + " probes";
@@ -102,6 +108,7 @@ class Chooser {
     limit_probes();
     const double hope = kMostSaved * options_.prices.saved * pool_.expected_cost() * rays_.expected;
     double cheapest = INFINITY;
+    if (consider_frame(hope)) return;
     for (const char* const way : {"-rays", "-order"}) {
       if (way == std::string("-order") && rays_.query != Query::kAny) continue;
       const std::string name = base() + way;
@@ -109,7 +116,6 @@ class Chooser {
       cheapest = std::min(cheapest, price);
       if (hope > 2.0 * price && consider(name)) break;
     }
-    consider_frame(hope);
     if (!decision_.trials.empty()) return;
     decision_.reason = number(rays_.expected, 0) +
                        " rays cannot repay another tree: the cheapest costs as much as " +
@@ -117,15 +123,36 @@ class Chooser {
                        number(hope / (kMostSaved * options_.prices.saved), 0);
   }
 
-  // By totals before anything is made: boxes of axis-parallel walls are fatter in any frame but the world's.
-  void consider_frame(double hope) {
-    if (!options_.light_space || decision_.obliquity < options_.least_oblique) return;
-    if (base() == "best") return;
-    if (!(hope > 2.0 * pool_.likely_price("light-rays"))) return;
+  // By totals before anything is made, and by a few probes: boxes of axis-parallel walls are fatter in any
+  // frame but the world's. Whether nothing else need be made.
+  bool consider_frame(double hope) {
+    if (!options_.light_space || decision_.obliquity < options_.least_oblique) return false;
+    if (base() == "best") return false;
+    if (!(hope > 2.0 * pool_.likely_price("light-rays"))) return false;
     decision_.framed_share = pool_.framed_share();
     const bool every = rays_.query == Query::kEvery;
-    if (decision_.framed_share <= (every ? options_.most_framed_every : options_.most_framed))
-      consider("light-rays");
+    if (decision_.framed_share > (every ? options_.most_framed_every : options_.most_framed)) return false;
+    if (!every && framed_cost() > options_.most_framed_cost) return false;
+    if (!consider("light-rays")) return false;
+    const Trial& trial = decision_.trials.back();
+    return trial.standing.cost * work_of(true) <= (1.0 - kSavedEnough) * trial.standing.baseline;
+  }
+
+  // What a few probes cost in the baseline put in the frame, beside what they cost in it as it is.
+  double framed_cost() {
+    const std::size_t some = std::min(kFramedProbes, probes_.size());
+    double own = 0.0;
+    double framed = 0.0;
+    for (const double cost : baseline_costs(0, some)) own += cost;
+    for (const double cost : traced(pool_.framed_baseline(), 0, some)) framed += cost;
+    return own > 0.0 ? framed / own : 1.0;
+  }
+
+  // What a ray's work in a fitted tree is worth, in work of the baseline.
+  [[nodiscard]] double work_of(bool framed) const {
+    if (rays_.query == Query::kEvery) return 1.0;
+    const double packets = options_.packets && rays_.together ? options_.packet_work : 1.0;
+    return framed ? std::max(options_.framed_work, packets) : packets;
   }
 
   // As many as the share of the baseline's build that probing may take pays for.
@@ -154,8 +181,7 @@ class Chooser {
     } else {
       const Race race = run_race(candidate.tree.tree);
       trial.standing = race.standings[0];
-      const bool dearer = candidate.tree.tree.bvh.frame.has_value() && rays_.query != Query::kEvery;
-      const double cost = trial.standing.cost * (dearer ? options_.framed_work : 1.0);
+      const double cost = trial.standing.cost * work_of(candidate.tree.tree.bvh.frame.has_value());
       trial.saving = options_.prices.saved * rays_.expected * (trial.standing.baseline - cost);
       const bool better = trial.standing.verdict == Verdict::kBetter;
       kept = better && trial.saving - trial.price > most_saved_;
@@ -187,15 +213,19 @@ class Chooser {
         1, probes_.size(),
         [&](std::size_t tree, std::size_t first, std::size_t count) {
           if (tree != 0) return traced(candidate, first, count);
-          // What the baseline costs is known from the race before.
-          for (std::size_t at = baseline_costs_.size(); at < first + count; at = baseline_costs_.size()) {
-            const std::vector<double> more = traced(pool_.baseline().tree, at, first + count - at);
-            baseline_costs_.insert(baseline_costs_.end(), more.begin(), more.end());
-          }
-          const auto from = baseline_costs_.begin() + static_cast<std::ptrdiff_t>(first);
-          return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(count));
+          return baseline_costs(first, count);
         },
         options_.race);
+  }
+
+  // Known from the race before, or found now.
+  std::vector<double> baseline_costs(std::size_t first, std::size_t count) {
+    for (std::size_t at = baseline_costs_.size(); at < first + count; at = baseline_costs_.size()) {
+      const std::vector<double> more = traced(pool_.baseline().tree, at, first + count - at);
+      baseline_costs_.insert(baseline_costs_.end(), more.begin(), more.end());
+    }
+    const auto from = baseline_costs_.begin() + static_cast<std::ptrdiff_t>(first);
+    return {from, from + static_cast<std::ptrdiff_t>(count)};
   }
 
   std::vector<double> traced(const OrderedTree& tree, std::size_t first, std::size_t count) {
@@ -214,6 +244,10 @@ class Chooser {
       decision_.reason = percent(1.0 - trial.standing.cost / trial.standing.baseline) +
                          " cheaper on probe rays; saves the work of " + number(trial.saving, 0) +
                          " box tests for a price of " + number(trial.price, 0);
+    } else if (better && trial.saving <= 0.0) {
+      decision_.reason = trial.name + " does " +
+                         percent(1.0 - trial.standing.cost / trial.standing.baseline) +
+                         " less work on probe rays, too little to save time in packets or in a frame";
     } else if (better) {
       decision_.reason = trial.name + " is cheaper to trace but does not repay its price over " +
                          number(rays_.expected, 0) + " rays";
@@ -271,8 +305,10 @@ void PlanOptions::check() const {
   require(least_oblique >= 1.0, "least_oblique", std::to_string(least_oblique), "of numbers >= 1");
   for (const double share : {most_framed, most_framed_every})
     require(share >= 0.0, "most_framed or most_framed_every", std::to_string(share), "of numbers >= 0");
-  require(framed_work >= 1.0 && std::isfinite(framed_work), "framed_work", std::to_string(framed_work),
-          "of finite numbers >= 1");
+  require(most_framed_cost >= 0.0, "most_framed_cost", std::to_string(most_framed_cost), "of numbers >= 0");
+  for (const double work : {framed_work, packet_work})
+    require(work >= 1.0 && std::isfinite(work), "framed_work or packet_work", std::to_string(work),
+            "of finite numbers >= 1");
   race.check();
   for (const double price :
        {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish, prices.divide,

@@ -26,6 +26,8 @@ struct PlanRays {
   std::vector<Ray> fit;    // trees are fitted to these
   std::vector<Ray> probe;  // and judged by these: drawn apart, with another seed
   double expected = 0.0;   // rays of this kind that will be traced; >= 0
+  // Neighbours in a batch run through one point or one way, as in a picture: tracers may take them together.
+  bool together = false;
 };
 
 // What work costs beside a box test of a device's tracer, in whose units plans reckon. Defaults are rounded
@@ -72,10 +74,18 @@ struct PlanOptions {
   double least_oblique = 1.3;
   double most_framed = 0.95;
   double most_framed_every = 1.1;  // the same for Query::kEvery, whose cost that is
+  // For others a few probes are traced through the baseline put in the frame, too: they may cost at most so
+  // much of what they cost in it as it is.
+  double most_framed_cost = 0.9;
   // What a ray's work in such a tree is worth, in work of other trees, where time is saved by it and not by
   // counts alone (Query::kEvery): rays in packets part sooner there. 1.1 to 1.6 measured
   // (host/notes/light-space.md).
   double framed_work = 1.4;
+  // The tracer takes rays that run together in packets, which meet what any of their rays meets: of what a
+  // fitted tree saves each ray little is left. So much their work in such a tree is worth, in work of the
+  // baseline: 1.1 to 1.4 measured (host/notes/ray-aware.md).
+  bool packets = false;
+  double packet_work = 1.3;
   bool keep_tried = false;  // Plan::trees has every candidate that was made, not only what is kept
 
   // Throws Error{kInvalidArgument} naming the option, its value and its range.
@@ -93,7 +103,7 @@ struct PlanOptions {
 // PlanOptions::light_space alone.
 // All but "sah" and "best" have the learnt order where any hit is asked for; "sah-order" is for any hit only.
 // "auto" tries "sah-rays" ("best-rays"), and for any hit "sah-order" ("best-order") where that is not kept;
-// for oblique rays "light-rays" too, which is kept if it saves more than those.
+// for oblique rays "light-rays" before them, and where that saves much nothing else.
 [[nodiscard]] const std::vector<std::string>& candidate_names();
 
 // A tree of the plan.

@@ -98,13 +98,16 @@ PlanPool::Space PlanPool::along_rays() {
 
 double PlanPool::framed_share() {
   const Space space = along_rays();
-  Bvh framed = baseline_.tree.bvh;
+  framed_baseline_ = {baseline_.tree.bvh, {}};
+  Bvh& framed = framed_baseline_.bvh;
   if (framed.nodes.empty()) return 1.0;
   refit_reference(framed, space.triangles);
   work_ += for_all(2.0 * kTotalPrice);
   const double seen = seen_total(baseline_.tree.bvh, mean_components(fit_));
+  const double along = seen_total(framed, mean_components(space.fit));
+  framed.frame = space.frame;  // last: until then rays are turned
   // Frames halve the scene.
-  return seen > 0.0 ? 4.0 * seen_total(framed, mean_components(space.fit)) / seen : 1.0;
+  return seen > 0.0 ? 4.0 * along / seen : 1.0;
 }
 
 double PlanPool::expected_cost() {
@@ -182,7 +185,10 @@ PlanPool::Entry PlanPool::make(const std::string& name) {
   }
   if (!as_it_is) entry.tree.bytes = bytes_of(bvh);
   entry.tree.bytes += entry.tree.tree.weights.size() * sizeof(float);
-  if (query_ == Query::kAny && name != baseline_.name) learn(entry.tree, space);
+  // A tree that is not looked at any further needs no order.
+  const bool given_up = options_.choice == "auto" && name == baseline_.name + "-rays" &&
+                        entry.fit_gain < options_.race.least_gain;
+  if (query_ == Query::kAny && name != baseline_.name && !given_up) learn(entry.tree, space);
   bvh.frame = space.frame;  // last: until then triangles and rays are turned
   work_ += entry.tree.build_units;
   return entry;

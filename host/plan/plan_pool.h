@@ -28,6 +28,8 @@ class PlanPool {
   // they see of them as they are. No ray is traced for this.
   [[nodiscard]] double obliquity() const { return light_.obliquity; }
   [[nodiscard]] double framed_share();
+  // The baseline with its boxes in that frame; after framed_share().
+  [[nodiscard]] const OrderedTree& framed_baseline() const { return framed_baseline_; }
   // A candidate's tree with what it took, and the share of its weight that sampled rays saved.
   struct Entry {
     PlanTree tree;
@@ -72,6 +74,7 @@ class PlanPool {
   std::optional<BoxFrame> frame_;
   std::vector<Triangle> turned_triangles_;
   std::vector<Ray> turned_fit_;
+  OrderedTree framed_baseline_;
 };
 
 }  // namespace gnomon

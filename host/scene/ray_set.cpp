@@ -73,6 +73,12 @@ bool asks_any_hit(RayKind kind) {
   return kind == RayKind::kShadow || kind == RayKind::kParallel;
 }
 
+bool run_together(RayKind kind, const Scene& scene) {
+  if (kind == RayKind::kShadow)
+    return scene.lights.empty() || (scene.lights.size() == 1 && scene.lights[0].kind != LightKind::kArea);
+  return kind == RayKind::kPrimary || kind == RayKind::kParallel;
+}
+
 Camera default_camera(const Scene& scene) {
   const Box box = box_of(scene);
   const Point back = glm::normalize(Point{0.55, 0.4, 1.0});

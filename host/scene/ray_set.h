@@ -27,6 +27,9 @@ enum class RayKind {
 [[nodiscard]] std::optional<RayKind> ray_kind_from(std::string_view name);
 // Shadow and parallel rays ask only whether anything is hit.
 [[nodiscard]] bool asks_any_hit(RayKind kind);
+// Neighbours in such a batch run through one point or one way: from a camera, along a sun, to a scene's only
+// light where that is no area.
+[[nodiscard]] bool run_together(RayKind kind, const Scene& scene);
 
 // A camera that sees the whole scene from outside, for scenes without one.
 [[nodiscard]] Camera default_camera(const Scene& scene);

@@ -9,10 +9,10 @@
 
 namespace gnomon {
 
-// make_walk(ray) gives a walk with run(), best and counters. Rays that are not traceable are counted and
-// miss.
-template <typename MakeWalk>
-ReferenceTrace trace_by(std::span<const Ray> rays, const MakeWalk& make_walk) {
+// make_walk(ray) gives a walk with run(), best and counters, which finish(walk) sees when it is over. Rays
+// that are not traceable are counted and miss.
+template <typename MakeWalk, typename Finish>
+ReferenceTrace trace_by(std::span<const Ray> rays, const MakeWalk& make_walk, const Finish& finish) {
   ReferenceTrace out;
   out.hits.reserve(rays.size());
   out.counters.reserve(rays.size());
@@ -27,8 +27,14 @@ ReferenceTrace trace_by(std::span<const Ray> rays, const MakeWalk& make_walk) {
     }
     out.hits.push_back(walk.best);
     out.counters.push_back(walk.counters);
+    finish(walk);
   }
   return out;
+}
+
+template <typename MakeWalk>
+ReferenceTrace trace_by(std::span<const Ray> rays, const MakeWalk& make_walk) {
+  return trace_by(rays, make_walk, [](const auto&) {});
 }
 
 }  // namespace gnomon

@@ -56,6 +56,7 @@ class Walk {
 
   Hit best{std::numeric_limits<float>::infinity(), 0.0F, 0.0F, GN_NONE};
   GnRayCounters counters{0, 0};
+  WideSteps steps;
 
  private:
   // Boxes entered at infinity are missed, as in gn_box_entry.
@@ -79,6 +80,7 @@ class Walk {
   // The last pushed is visited next: the nearest for closest hits, the largest for any hit.
   void push_children(const WideNode& node, std::vector<Waiting>& waiting) {
     const std::size_t before = waiting.size();
+    steps.nodes += 1;
     for (std::uint32_t slot = 0; slot < GN_WIDTH; ++slot) {
       float entry = 0.0F;
       if (node.links[slot] != GN_NONE) counters.boxes += 1;
@@ -96,6 +98,7 @@ class Walk {
     const std::uint32_t count = gn_link_triangles(link);
     counters.triangles += count;
     for (std::uint32_t i = 0; i < count; ++i) {
+      if (i % GN_WIDTH == 0) steps.blocks += 1;
       test_triangle({&wide_.blocks[gn_link_block(link) + i / GN_WIDTH], i % GN_WIDTH});
       if (any_hit_ && found_) return true;
     }
@@ -147,6 +150,7 @@ class Walk {
   }
 
   void test_exactly(const Place& place, int verdict) {
+    steps.exact += 1;
     Hit hit{};
     if (!resolve(place, verdict, hit) || !(hit.t >= ray_.tmin && hit.t <= ray_.tmax)) return;
     settle();
@@ -184,8 +188,14 @@ class Walk {
 
 }  // namespace
 
-ReferenceTrace trace_wide_reference(const WideBvh& wide, std::span<const Ray> rays, bool any_hit) {
-  return trace_by(rays, [&](const Ray& ray) { return Walk(wide, ray, any_hit); });
+ReferenceTrace trace_wide_reference(const WideBvh& wide, std::span<const Ray> rays, bool any_hit,
+                                    std::vector<WideSteps>* steps) {
+  if (steps != nullptr) steps->clear();
+  return trace_by(
+      rays, [&](const Ray& ray) { return Walk(wide, ray, any_hit); },
+      [&](const Walk& walk) {
+        if (steps != nullptr) steps->push_back(walk.steps);
+      });
 }
 
 }  // namespace gnomon

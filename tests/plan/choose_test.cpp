@@ -174,6 +174,33 @@ TEST_CASE("where sampled rays bring nothing, any hit still gets its order") {
   REQUIRE(plan.decisions[1].trials.size() == 2);
 }
 
+TEST_CASE(
+    "rays that packets take together keep the baseline where too little would be left of what is saved") {
+  auto rays = both_kinds(kMany);
+  rays[0].together = true;
+  PlanOptions options;
+  options.packet_work = 10.0;
+  REQUIRE(gnomon::make_plan(cottage().triangles, rays, options).decisions[0].kept != "sah");
+  options.packets = true;
+  const Plan plan = gnomon::make_plan(cottage().triangles, rays, options);
+  REQUIRE(plan.decisions[0].kept == "sah");
+  REQUIRE_THAT(plan.decisions[0].reason, Catch::Contains("packets"));
+  REQUIRE(plan.decisions[1].kept != "sah");
+  options.packet_work = 0.9;
+  REQUIRE_THROWS_WITH(gnomon::make_plan(cottage().triangles, rays, options), Catch::Contains("packet_work"));
+}
+
+TEST_CASE("an order is learnt for what may be kept alone") {
+  PlanOptions options;
+  options.sampled.least_saved = 1e6F;  // no move
+  options.keep_tried = true;
+  const Plan plan = gnomon::make_plan(cottage().triangles, both_kinds(kMany), options);
+  const auto& trials = plan.decisions[1].trials;
+  REQUIRE(trials.size() == 2);
+  REQUIRE(plan.trees[trials[0].tree].tree.ranks.empty());
+  REQUIRE_FALSE(plan.trees[trials[1].tree].tree.ranks.empty());
+}
+
 TEST_CASE("a choice by name is kept without a test") {
   PlanOptions options;
   options.light_space = true;

@@ -54,6 +54,22 @@ TEST_CASE("names of ray kinds come back as the kinds") {
   CHECK_FALSE(gnomon::ray_kind_from(""));
 }
 
+TEST_CASE("rays of a camera, along a sun and to the only light run together, others do not") {
+  Scene scene;
+  const auto together = [&](RayKind kind) { return gnomon::run_together(kind, scene); };
+  CHECK(together(RayKind::kPrimary));
+  CHECK(together(RayKind::kParallel));
+  CHECK_FALSE(together(RayKind::kBounce));
+  CHECK_FALSE(together(RayKind::kRandom));
+  CHECK(together(RayKind::kShadow));  // to the sun that a scene without lights has
+  scene.lights.resize(1);
+  CHECK(together(RayKind::kShadow));
+  scene.lights[0].kind = gnomon::LightKind::kArea;
+  CHECK_FALSE(together(RayKind::kShadow));
+  scene.lights = std::vector<gnomon::Light>(2);
+  CHECK_FALSE(together(RayKind::kShadow));
+}
+
 TEST_CASE("primary rays visit each pixel once, in Morton order") {
   const Scene scene = floor_scene();
   const auto rays = gnomon::primary_rays(scene, 64 * 64, 7);

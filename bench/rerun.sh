@@ -64,7 +64,7 @@ take_speed() {
   local flavours=wide,portable,packet,sorted builders=balanced,fast,best
   beside_embree --scenes atrium,terrain,random --ray-count 131072 --rounds 5 --rays $single \
     --flavours $flavours --builders $builders
-  beside_embree --scenes city --ray-count 32768 --rounds 5 --rays bounce,random --flavours $flavours \
+  beside_embree --scenes city --ray-count 32768 --rounds 5 --rays $single --flavours $flavours \
     --builders $builders
   beside_embree --scenes atrium,terrain,random --ray-count 1048576 --rounds 5 --rays $coherent \
     --flavours packet,wide --no-build

@@ -91,4 +91,41 @@ table reproduction.md predictions reproduce.jsonl '
    (if $wide == [] then " | |" else
       " | \($wide[0].error | fabs | percent) (noise \($wide[0] | noise | percent)) |" end))'
 
+# Ratios to Embree of the newest rows, a line for each figure that is asked for.
+table speed.md speed speed.jsonl '
+  last.commit as $new | map(select(.commit == $new and .triangles > 900000 and .threads == 1)) as $rows |
+  ["atrium", "terrain", "random", "city"] as $scenes |
+  def geomean: (map(log) | add / length | exp);
+  def cell: .ratio | "\(.median | fixed(2)) (\(.min | fixed(2))–\(.max | fixed(2)))";
+  def found($scene; $task; $rays; $ours; $peer; $many): $rows | map(select(.scene == $scene and .task == $task and .rays == $rays and
+    .ours == $ours and .peer == $peer and ($many == null or (.ray_count > 150000) == $many)))[-1];
+  def entry($name; $task; $rays; $ours; $peer; $many):
+    [$scenes[] | found(.; $task; $rays; $ours; $peer; $many) | select(. != null)] as $found |
+    "| \($name) | " + ([$scenes[] | found(.; $task; $rays; $ours; $peer; $many) | if . == null then "–" else cell end] | join(" | ")) +
+    " | \([$found[].ratio.median] | geomean | fixed(2)) |";
+  def over($name; $task; $rays):
+    [$scenes[] | (found(.; $task; $rays; "portable"; "MEDIUM 1"; false).ratio.median /
+                  found(.; $task; $rays; "wide"; "MEDIUM 1"; false).ratio.median)] as $shares |
+    "| \($name) | " + ([$shares[] | fixed(2)] | join(" | ")) + " | \($shares | geomean | fixed(2)) |";
+  "Commit \($new), \($rows[0].device).", "",
+  (["", "atrium", "terrain", "random", "city", "geomean"] | line), "|---|---|---|---|---|---|",
+  entry("closest hit, bounce, single"; "closest hit"; "bounce"; "wide"; "MEDIUM 1"; false),
+  entry("the same, ROBUST"; "closest hit"; "bounce"; "wide"; "MEDIUM ROBUST 1"; false),
+  entry("any hit, shadow, single"; "any hit"; "shadow"; "wide"; "MEDIUM 1"; false),
+  entry("the same, `kAuto`"; "any hit"; "shadow"; "packet"; "MEDIUM 1"; false),
+  entry("primary, packets, of 16"; "closest hit"; "primary"; "packet"; "MEDIUM 16"; null),
+  entry("shadow, packets, of 16"; "any hit"; "shadow"; "packet"; "MEDIUM 16"; true),
+  entry("sun along an axis, packets, of 16"; "any hit"; "sun-axis"; "packet"; "MEDIUM 16"; null),
+  entry("oblique sun, packets, of 16"; "any hit"; "sun-oblique"; "packet"; "MEDIUM 16"; null),
+  entry("shuffled bounce, sorted, single"; "closest hit"; "bounce-shuffled"; "sorted"; "MEDIUM 1"; false),
+  entry("shuffled shadow, sorted by light, single"; "any hit"; "shadow-shuffled"; "light-sorted"; "MEDIUM 1"; null),
+  entry("balanced, MEDIUM"; "build"; null; "balanced"; "MEDIUM"; null),
+  entry("fast, LOW"; "build"; null; "fast"; "LOW"; null),
+  entry("its tree, bounce, single"; "closest hit"; "bounce"; "wide"; "LOW 1"; false),
+  entry("best, HIGH"; "build"; null; "best"; "HIGH"; null),
+  entry("its tree, bounce, single"; "closest hit"; "bounce"; "wide"; "HIGH 1"; false),
+  entry("its tree, shadow, single"; "any hit"; "shadow"; "wide"; "HIGH 1"; false),
+  over("portable over wide, bounce"; "closest hit"; "bounce"),
+  over("portable over wide, shadow"; "any hit"; "shadow")'
+
 [ "$behind" = 0 ] || [ "$check" != --check ]

@@ -13,6 +13,7 @@
 #include "gnomon/plan/choose.h"
 #include "gnomon_commit.h"
 #include "paired.h"
+#include "ray_aware/set_up_commands.h"
 #include "ray_aware/set_ups.h"
 
 namespace {
@@ -107,14 +108,7 @@ class Bench {
 int main(int argc, char** argv) {
   CLI::App app("What plans take by the clock, beside the build of their baseline.");
   Settings settings;
-  app.require_subcommand(1);
-  CLI::App* const thesis = app.add_subcommand("thesis", "the thesis' set-ups");
-  thesis->add_option("--configs", settings.sources.configs)->required();
-  thesis->add_option("--scenes", settings.sources.models)->required();
-  thesis->add_option("--only", settings.sources.only, "set-ups whose label has this");
-  CLI::App* const generated = app.add_subcommand("generated", "generated scenes");
-  generated->add_option("--scenes", settings.sources.scenes)->delimiter(',');
-  generated->add_option("--triangles", settings.sources.triangles);
+  const bench::SetUpCommands commands = bench::add_set_up_commands(app, settings.sources);
   app.add_option("--expected", settings.expected, "rays that trees must repay themselves over");
   app.add_option("--rounds", settings.rounds);
   CLI11_PARSE(app, argc, argv);
@@ -122,8 +116,8 @@ int main(int argc, char** argv) {
     const cl::Context context = bench::one_thread_context();
     const Bench bench(settings, context);
     const auto run = [&](const AwareSetUp& made) { bench.run(made); };
-    if (thesis->parsed()) bench::for_each_thesis_set_up(settings.sources, run);
-    if (generated->parsed()) bench::for_each_generated_set_up(settings.sources, run);
+    if (commands.thesis->parsed()) bench::for_each_thesis_set_up(settings.sources, run);
+    if (commands.generated->parsed()) bench::for_each_generated_set_up(settings.sources, run);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -19,6 +19,7 @@
 #include "gnomon/plan/choose.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon_commit.h"
+#include "ray_aware/set_up_commands.h"
 #include "ray_aware/set_ups.h"
 
 namespace {
@@ -175,14 +176,7 @@ class Bench {
 int main(int argc, char** argv) {
   CLI::App app("Trees for given rays beside the best surface-area tree, by counts.");
   Settings settings;
-  app.require_subcommand(1);
-  CLI::App* const thesis = app.add_subcommand("thesis", "the thesis' set-ups");
-  thesis->add_option("--configs", settings.sources.configs)->required();
-  thesis->add_option("--scenes", settings.sources.models)->required();
-  thesis->add_option("--only", settings.sources.only, "set-ups whose label has this");
-  CLI::App* const generated = app.add_subcommand("generated", "generated scenes");
-  generated->add_option("--scenes", settings.sources.scenes)->delimiter(',');
-  generated->add_option("--triangles", settings.sources.triangles);
+  const bench::SetUpCommands commands = bench::add_set_up_commands(app, settings.sources);
   settings.plan.light_space = true;  // trees are traced by the reference
   app.add_option("--query", settings.query, "closest, any or every alone");
   app.add_option("--rays", settings.sources.rays, "to measure on");
@@ -198,8 +192,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     const auto run = [&](const AwareSetUp& made) { Bench(settings, made).run(); };
-    if (thesis->parsed()) bench::for_each_thesis_set_up(settings.sources, run);
-    if (generated->parsed()) bench::for_each_generated_set_up(settings.sources, run);
+    if (commands.thesis->parsed()) bench::for_each_thesis_set_up(settings.sources, run);
+    if (commands.generated->parsed()) bench::for_each_generated_set_up(settings.sources, run);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

@@ -8,35 +8,18 @@
 #include "gnomon/base/error.h"
 #include "gnomon/shared/collapse_math.h"
 #include "gnomon/tree/build_reference.h"
-#include "gnomon/tree/trace_wide_reference.h"
 #include "support/wide_shapes.h"
+#include "support/wide_slots.h"
 
 using gnomon::Bvh;
 using gnomon::CollapseOptions;
 using gnomon::Node;
 using gnomon::WideBvh;
+using gnomon::test::half_area;
+using gnomon::test::is_leaf;
+using gnomon::test::slot_half_area;
 
 namespace {
-
-double half_area(const Node& node) {
-  const auto extent = [&](int k) {
-    return static_cast<double>(node.hi[k]) - static_cast<double>(node.lo[k]);
-  };
-  return extent(0) * (extent(1) + extent(2)) + extent(1) * extent(2);
-}
-
-bool is_leaf(std::uint32_t link) {
-  return (link & GN_LEAF_LINK) != 0;
-}
-
-double slot_half_area(const gnomon::WideNode& node, std::uint32_t slot) {
-  Node box{};
-  for (int k = 0; k < 3; ++k) {
-    box.lo[k] = node.planes[2 * k][slot];
-    box.hi[k] = node.planes[2 * k + 1][slot];
-  }
-  return half_area(box);
-}
 
 // Nodes and blocks weighted by their areas: what the collapse makes least. The root's own step is left out.
 double cost_of(const WideBvh& wide, const CollapseOptions& options) {
@@ -145,25 +128,6 @@ Bvh single_leaf(std::uint32_t count) {
   return bvh;
 }
 
-// What triangles below a slot show along the three axes, in double precision.
-double shown_below(const WideBvh& wide, std::uint32_t link) {
-  double shown = 0.0;
-  if (!is_leaf(link)) {
-    for (const std::uint32_t below : wide.nodes[link].links)
-      if (below != GN_NONE) shown += shown_below(wide, below);
-    return shown;
-  }
-  for (std::uint32_t i = 0; i < gn_link_triangles(link); ++i) {
-    const gnomon::TriangleBlock& block = wide.blocks[gn_link_block(link) + i / GN_WIDTH];
-    const auto edge = [&](std::uint32_t corner, std::uint32_t k) {
-      return double{block.corners[3 * corner + k % 3][i % GN_WIDTH]} - block.corners[k % 3][i % GN_WIDTH];
-    };
-    for (std::uint32_t k = 0; k < 3; ++k)
-      shown += 0.5 * std::fabs(edge(1, k) * edge(2, k + 1) - edge(1, k + 1) * edge(2, k));
-  }
-  return shown;
-}
-
 bool same_bytes(const WideBvh& a, const WideBvh& b) {
   return gnomon::tree_hash(a) == gnomon::tree_hash(b) && a.depth == b.depth;
 }
@@ -181,45 +145,6 @@ TEST_CASE("collapsed trees of every shape keep all promises") {
       REQUIRE(wide.depth <= stats_of(bvh, shape.options).max_depth + 1);
     }
   }
-}
-
-TEST_CASE(
-    "slots are in order of the share of their area that shows and of a quarter of the area, as logarithms") {
-  const auto triangles = gnomon::test::soup(3000, 1880, 1.0F);
-  const WideBvh wide =
-      gnomon::collapse_reference(gnomon::build_reference(triangles, gnomon::test::leaves_of(4)), triangles);
-  std::uint32_t ordered = 0;
-  std::uint32_t against_area = 0;
-  for (const gnomon::WideNode& node : wide.nodes) {
-    double last = -INFINITY;
-    double last_area = 0.0;
-    for (std::uint32_t slot = 0; slot < GN_WIDTH && node.links[slot] != GN_NONE; ++slot) {
-      const double area = slot_half_area(node, slot);
-      const double shown = shown_below(wide, node.links[slot]);
-      const double key = std::log2(shown / (area + shown)) + 0.25 * std::log2(area);
-      // Bits of floats run straight between powers of two, at most 0.0861 below the logarithm.
-      CAPTURE(slot, key, last);
-      REQUIRE(key > last - 2.25 * 0.0861);
-      ordered += key > last + 2.25 * 0.0861 ? 1 : 0;
-      against_area += area < last_area ? 1 : 0;
-      last = key;
-      last_area = area;
-    }
-  }
-  REQUIRE(ordered > 200);
-  REQUIRE(against_area > 100);
-}
-
-TEST_CASE("slot keys are numbers whatever the areas") {
-  for (const float area : {0.0F, 1e-45F, 1e-30F, 1.0F, 3e38F, INFINITY}) {
-    for (const float shown : {0.0F, 1e-45F, 1e-30F, 1.0F, 3e38F, INFINITY}) {
-      CAPTURE(area, shown);
-      REQUIRE(std::isfinite(gn_slot_key(area, shown)));
-    }
-  }
-  REQUIRE(gn_slot_key(1.0F, 0.5F) < gn_slot_key(1.0F, 2.0F));
-  REQUIRE(gn_slot_key(1.0F, 1.0F) < gn_slot_key(4.0F, 4.0F));
-  REQUIRE(gn_slot_key(4.0F, 0.5F) < gn_slot_key(1.0F, 0.5F));
 }
 
 TEST_CASE("with weights no way to collapse a small tree costs less by these") {
@@ -391,37 +316,4 @@ TEST_CASE("a byte of a node or a block changes the hash") {
   wide.blocks.back().primitives[7] ^= 1U;
   wide.nodes.back().pad[7] ^= 1U;
   REQUIRE(gnomon::tree_hash(wide) != before);
-}
-
-TEST_CASE("a ray by itself takes a step for each node and each block of eight triangles") {
-  // 20 triangles behind each other, in one leaf: three blocks.
-  std::vector<GnTriangle> triangles;
-  for (int i = 0; i < 20; ++i) {
-    const auto z = static_cast<float>(i);
-    triangles.push_back({{-1.0F, -1.0F, z}, {3.0F, -1.0F, z}, {-1.0F, 3.0F, z}});
-  }
-  gnomon::BuildOptions one_leaf;
-  one_leaf.max_leaf_size = 20;
-  one_leaf.cost_traversal = 1000.0F;
-  const WideBvh wide = gnomon::collapse_reference(gnomon::build_reference(triangles, one_leaf), triangles);
-  REQUIRE(wide.nodes.size() == 1);
-  REQUIRE(wide.blocks.size() == 3);
-  const std::vector<GnRay> rays{{{0, 0, -1}, 0, {0, 0, 1}, 100}, {{9, 9, -1}, 0, {0, 0, 1}, 100}};
-  std::vector<gnomon::WideSteps> steps;
-  const auto closest = gnomon::trace_wide_reference(wide, rays, false, &steps);
-  REQUIRE(closest.hits[0].primitive == 0);
-  REQUIRE(steps.size() == 2);
-  CHECK(steps[0].nodes == 1);
-  CHECK(steps[0].blocks == 3);
-  CHECK(steps[0].exact == 0);
-  CHECK(steps[1].nodes == 1);
-  CHECK(steps[1].blocks == 0);
-  // Any hit ends with the first.
-  CHECK(gnomon::trace_wide_reference(wide, rays, true, &steps).hits[0].primitive != GN_NONE);
-  CHECK(steps[0].blocks == 1);
-  // One triangle twice: floats cannot rank them.
-  triangles.assign(2, triangles[0]);
-  const WideBvh twice = gnomon::collapse_reference(gnomon::build_reference(triangles, one_leaf), triangles);
-  REQUIRE(gnomon::trace_wide_reference(twice, rays, false, &steps).hits[0].primitive == 0);
-  CHECK(steps[0].exact == 1);
 }

@@ -2,12 +2,17 @@
 // tracer's own kernels in between. Paths that have ended, and shadow rays that need not be asked, are packed out by a
 // stable prefix sum (scan_values of radix_sort.cl), so a batch's order never depends on the device. One work-item per
 // path, or per chunk.
+// Options: GN_WGS (1: step_paths looks at lights in lanes, lanes.h).
+#include "ahead.h"
 #include "shared/path_math.h"
+
+// Paths that one item looks ahead: what a ray met lies anywhere.
+#define GN_PATHS_AHEAD 8u
 
 #define GN_PATH_TABLES \
   __global const GnPathFrame *frame, __global const GnTriangle *triangles, __global const uint *surface_ids, \
-      __global const GnSurface *surfaces, __global const GnPathLight *lights, __global const GnEmitter *emitters, \
-      __global const GnEmitterLink *links
+      __global const GnSurface *surfaces, __global const GnPathLight *lights, __global const float *light_rows, \
+      __global const GnEmitter *emitters, __global const GnEmitterLink *links
 
 #define GN_COLLECT_TABLES(tables) \
   tables.frame = frame; \
@@ -15,6 +20,7 @@
   tables.surface_ids = surface_ids; \
   tables.surfaces = surfaces; \
   tables.lights = lights; \
+  tables.light_rows = light_rows; \
   tables.emitters = emitters; \
   tables.links = links
 
@@ -34,21 +40,28 @@ __kernel void begin_paths(GN_PATH_TABLES, __global GnPath* paths, __global GnRay
   }
 }
 
-// owners: the path of each ray. Writes the ray that each path goes on with, and the shadow ray it wants asked.
+// owners: the path of each ray. Writes the ray that each path goes on with, and the shadow ray it wants asked. A work-item
+// takes `each` paths, one after another.
 __kernel void step_paths(GN_PATH_TABLES, __global GnPath* paths, __global const GnRay* rays, __global const GnHit* hits,
                          __global const uint* owners, __global GnRay* next_rays, __global GnRay* shadow_rays,
-                         __global GnLit* lit, uint bounce, uint count) {
-  const uint i = (uint)get_global_id(0);
-  if (i < count) {
-    GnPathTables tables;
+                         __global GnLit* lit, uint bounce, uint count, uint each) {
+  const uint begin = (uint)get_global_id(0) * each;
+  GnPathTables tables;
+  uint i;
+  GN_COLLECT_TABLES(tables);
+  for (i = begin; i < begin + each && i < count; ++i) {
     GnPath path = paths[owners[i]];
     const GnRay ray = rays[i];
     const GnHit hit = hits[i];
+    const uint ahead = i + GN_PATHS_AHEAD < count && each > 1u ? hits[i + GN_PATHS_AHEAD].primitive : GN_NONE;
     GnRay next, shadow;
     GnLit brought;
+    if (ahead != GN_NONE) {
+      expect_range((__global const char*)(triangles + ahead), sizeof(GnTriangle));
+      GN_EXPECT(surface_ids + ahead);
+    }
     brought.radiance[0] = brought.radiance[1] = brought.radiance[2] = 0.0f;
     brought.light = GN_NONE;
-    GN_COLLECT_TABLES(tables);
     gn_path_step(&tables, &ray, &hit, bounce, &path, &next, &shadow, &brought);
     paths[owners[i]] = path;
     next_rays[i] = next;

@@ -19,7 +19,7 @@
 #include "numbers.h"
 #include "plan_choice.h"
 #include "planned_tracers.h"
-#include "render_rays.h"
+#include "render_plan.h"
 #include "scene_source.h"
 #include "tree_source.h"
 
@@ -50,39 +50,11 @@ struct Outcome {
   [[nodiscard]] std::uint64_t rays() const { return result.camera_rays + result.other_rays; }
 };
 
-// Upper bounds of what a picture can be to ask whether it is worth finding out: paths are rarely longer.
-constexpr double kMostRaysOfPath = 12.0;
-
 PlanOutcome plan_of(const Options& options, const cl::Context& context, const TimedBuild& build,
                     const Scene& scene, const Progress& progress) {
-  if (!options.plan.instead.empty()) return no_plan(options.plan, options.plan.instead + " says which tree");
-  if (options.samples == 0) return no_plan(options.plan, "a preview has few rays; --samples plans");
-  const double paths =
-      static_cast<double>(options.render.width) * options.render.height * options.render.samples;
-  const double most =
-      options.plan.expected != 0 ? static_cast<double>(options.plan.expected) : kMostRaysOfPath * paths;
-  const std::vector<Ray> seen = primary_rays(scene, 256, options.render.seed);
-  PlanTask task{context, scene, build, {{Query::kClosest, seen, most}}, "at most", {}};
-  task.light_space = takes_frames(context.device(), TraceFlavour::kAuto);
-  if (options.plan.name == "auto") {
-    const Outlook outlook = outlook_of(build.host, scene.triangles, task.to_come);
-    if (!outlook.pays) return plan_for(options.plan, task, progress);
-  }
-  const Tracer tracer(context, build.tree);
-  const std::vector<PlanRays> rays = rays_of_picture(context, tracer, scene, options.render, progress);
-  stop_if_interrupted();
-  task.to_come.clear();
-  for (const PlanRays& kind : rays) {
-    const double expected =
-        options.plan.expected != 0 ? static_cast<double>(options.plan.expected) : kind.expected;
-    task.to_come.push_back({kind.query, kind.probe, expected});
-  }
-  task.draw = [&] {
-    std::vector<PlanRays> drawn = rays;
-    for (std::size_t i = 0; i < drawn.size(); ++i) drawn[i].expected = task.to_come[i].expected;
-    return drawn;
-  };
-  return plan_for(options.plan, task, progress);
+  if (options.samples == 0 && options.plan.instead.empty())
+    return no_plan(options.plan, "a preview has few rays; --samples plans");
+  return plan_picture(options.plan, options.render, context, build, scene, progress);
 }
 
 RenderResult render_planned(const cl::Context& context, const Scene& scene, const Options& options,

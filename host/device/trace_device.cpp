@@ -216,25 +216,31 @@ RaySort* Tracer::sort_for(std::size_t answer_bytes) const {
 }
 
 cl::Handle<cl_event> Tracer::enqueue_batch(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
-                                           std::size_t answer_bytes,
-                                           std::span<const cl_event> wait_for) const {
+                                           std::size_t answer_bytes, std::span<const cl_event> wait_for,
+                                           cl::StageTimes* times) const {
+  cl::StageTimes unwanted;
+  cl::StageTimes& taken = times == nullptr ? unwanted : *times;
   RaySort* const sort = sort_for(answer_bytes);
-  if (sort == nullptr) return enqueue_passes(context_, *plan_, launch, wait_for, enqueuer(kernel));
-  cl::StageTimes times;
-  const Launch sorted = sort->begin(launch, answer_bytes, false, wait_for, times);
-  const auto traced = enqueue_passes(context_, *plan_, sorted, {}, enqueuer(kernel));
-  return sort->end(launch, answer_bytes, false, times);
+  const Launch order = sort == nullptr ? launch : sort->begin(launch, answer_bytes, false, wait_for, taken);
+  cl::Handle<cl_event> last = enqueue_passes(
+      context_, *plan_, order, sort == nullptr ? wait_for : std::span<const cl_event>{}, enqueuer(kernel));
+  taken.add("trace", cl::Handle<cl_event>::share(last.get()));
+  if (sort == nullptr) return last;
+  last = sort->end(launch, answer_bytes, false, taken);
+  taken.add("sort rays", cl::Handle<cl_event>::share(last.get()));
+  return last;
 }
 
 cl::Handle<cl_event> Tracer::enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
-                                             std::span<const cl_event> wait_for) const {
-  return enqueue_batch(closest_, {rays, hits, no_counters_.mem.get(), count}, sizeof(Hit), wait_for);
+                                             std::span<const cl_event> wait_for,
+                                             cl::StageTimes* times) const {
+  return enqueue_batch(closest_, {rays, hits, no_counters_.mem.get(), count}, sizeof(Hit), wait_for, times);
 }
 
 cl::Handle<cl_event> Tracer::enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
-                                         std::span<const cl_event> wait_for) const {
-  return enqueue_batch(any_, {rays, occluded, no_counters_.mem.get(), count}, sizeof(std::uint32_t),
-                       wait_for);
+                                         std::span<const cl_event> wait_for, cl::StageTimes* times) const {
+  return enqueue_batch(any_, {rays, occluded, no_counters_.mem.get(), count}, sizeof(std::uint32_t), wait_for,
+                       times);
 }
 
 template <typename Answer>

@@ -12,6 +12,7 @@
 
 #include "gnomon/base/progress.h"
 #include "gnomon/cl/context.h"
+#include "gnomon/cl/launch.h"
 #include "gnomon/device/build_device.h"
 #include "gnomon/device/collapse_device.h"
 #include "gnomon/device/compact_device.h"
@@ -107,11 +108,14 @@ class Tracer {
   // Enqueue on the context's queue and return: rays holds `count` GnRay; hits receives `count` GnHit,
   // occluded `count` uint32. Waits for the given events on the device. Options' counters are not available
   // this way. With a step limit this enqueues as many passes as the tree could need at worst, and needs
-  // memory for `count` stacks.
+  // memory for `count` stacks. The event is the last command's; `times` gets those of all that took time, of
+  // passes only the last.
   [[nodiscard]] cl::Handle<cl_event> enqueue_closest(cl_mem rays, cl_mem hits, std::uint32_t count,
-                                                     std::span<const cl_event> wait_for = {}) const;
+                                                     std::span<const cl_event> wait_for = {},
+                                                     cl::StageTimes* times = nullptr) const;
   [[nodiscard]] cl::Handle<cl_event> enqueue_any(cl_mem rays, cl_mem occluded, std::uint32_t count,
-                                                 std::span<const cl_event> wait_for = {}) const;
+                                                 std::span<const cl_event> wait_for = {},
+                                                 cl::StageTimes* times = nullptr) const;
   [[nodiscard]] TraceFlavour flavour() const { return flavour_; }
   // Rays so far that were not traceable, over all calls. Blocks until earlier launches are done.
   [[nodiscard]] std::uint64_t invalid_rays() const;
@@ -129,7 +133,8 @@ class Tracer {
   [[nodiscard]] RaySort* sort_for(std::size_t answer_bytes) const;
   [[nodiscard]] cl::Handle<cl_event> enqueue_batch(const cl::Handle<cl_kernel>& kernel, const Launch& launch,
                                                    std::size_t answer_bytes,
-                                                   std::span<const cl_event> wait_for) const;
+                                                   std::span<const cl_event> wait_for,
+                                                   cl::StageTimes* times) const;
   template <typename Answer>
   [[nodiscard]] TraceResult trace_all(const cl::Handle<cl_kernel>& kernel, std::span<const Ray> rays,
                                       std::vector<Answer> TraceResult::*answers,

@@ -36,8 +36,8 @@ std::vector<std::array<float, 4>> path_reference(const Scene& scene, const Bvh& 
                                                  const PathOptions& options, std::uint32_t samples) {
   const PathScene paths = make_path_scene(scene, options);
   const GnPathTables tables{&paths.frame,          scene.triangles.data(), scene.material_ids.data(),
-                            paths.surfaces.data(), paths.lights.data(),    paths.emitters.data(),
-                            paths.links.data()};
+                            paths.surfaces.data(), paths.lights.data(),    paths.light_rows.data(),
+                            paths.emitters.data(), paths.links.data()};
   std::vector<std::array<float, 4>> film(std::size_t{options.width} * options.height);
   for (std::uint32_t sample = 0; sample < samples; ++sample) {
     for (std::uint32_t cell = 0; cell < paths.cells(); ++cell) {

@@ -43,6 +43,7 @@ class Maker {
       add_light(default_sun());
     }
     add_sky(lights.sky_level());
+    fill_rows();
     std::sort(out_.links.begin(), out_.links.end(),
               [](const GnEmitterLink& a, const GnEmitterLink& b) { return a.triangle < b.triangle; });
     fill_frame();
@@ -130,6 +131,28 @@ class Maker {
     out_.frame.sky_light = static_cast<std::uint32_t>(out_.lights.size());
     out_.lights.push_back(out);
     out_.names.emplace_back("sky");
+  }
+
+  void fill_rows() {
+    const std::size_t stride = gn_light_stride(static_cast<gn_u32>(out_.lights.size()));
+    out_.light_rows.assign(GN_LIGHT_ROWS * stride + GN_LIGHT_ROOM, 0.0F);
+    const auto set = [&](std::size_t row, std::size_t light, float value) {
+      out_.light_rows[row * stride + light] = value;
+    };
+    // Suns without strength.
+    for (std::size_t i = out_.lights.size(); i < stride; ++i) set(GN_LIGHT_KINDS, i, GN_LIGHT_SUN);
+    for (std::size_t i = 0; i < out_.lights.size(); ++i) {
+      const GnPathLight& light = out_.lights[i];
+      set(GN_LIGHT_KINDS, i, static_cast<float>(light.kind));
+      set(GN_LIGHT_STRENGTHS, i, light.strength);
+      set(GN_LIGHT_RANGES, i, light.range);
+      set(GN_LIGHT_CONES, i, light.cos_outer);
+      set(GN_LIGHT_CONE_SCALES, i, light.cone_scale);
+      for (std::size_t k = 0; k < 3; ++k) {
+        set(GN_LIGHT_POSITIONS + k, i, light.position[k]);
+        set(GN_LIGHT_DIRECTIONS + k, i, light.direction[k]);
+      }
+    }
   }
 
   void fill_frame() {

@@ -14,6 +14,7 @@ struct PathScene {
   GnPathFrame frame{};
   std::vector<GnSurface> surfaces;   // the scene's materials
   std::vector<GnPathLight> lights;   // those that shine, and the sky as the last; a sun where there are none
+  std::vector<float> light_rows;     // the same, as lanes read them (path_layout.h)
   std::vector<GnEmitter> emitters;   // triangles of area lights, light after light
   std::vector<GnEmitterLink> links;  // sorted by triangle
   std::vector<std::string> names;    // of lights

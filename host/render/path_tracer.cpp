@@ -36,9 +36,10 @@ struct Tables {
         surface_ids(table_of<std::uint32_t>(context, "surface_ids", scene.material_ids)),
         surfaces(table_of<GnSurface>(context, "surfaces", paths.surfaces)),
         lights(table_of<GnPathLight>(context, "path_lights", paths.lights)),
+        light_rows(table_of<float>(context, "path_light_rows", paths.light_rows)),
         emitters(table_of<GnEmitter>(context, "emitters", paths.emitters)),
         links(table_of<GnEmitterLink>(context, "emitter_links", paths.links)) {}
-  cl::Buffer frame, triangles, surface_ids, surfaces, lights, emitters, links;
+  cl::Buffer frame, triangles, surface_ids, surfaces, lights, light_rows, emitters, links;
 };
 
 // What a batch of paths needs.
@@ -86,13 +87,14 @@ class PathTracer::Work {
         options_(options),
         scene_(make_path_scene(scene, options)),
         at_once_(paths_at_once()),
+        lanes_(context.device().is_cpu && context.device().loop_limit == 0),
         tables_(context, scene, scene_),
         room_(context, at_once_),
         film_(context.create_buffer("film", pixels() * sizeof(std::array<float, 4>))) {
     refuse_many_lights(context.device(), scene_.lights.size());
     scan_.digit_bits = 8;
+    step_ = context.programs().kernel({"path.cl"}, lanes_ ? "-DGN_WGS=1" : "", "step_paths");
     for (auto [kernel, name] : {std::pair{&begin_, "begin_paths"},
-                                {&step_, "step_paths"},
                                 {&count_, "count_rays"},
                                 {&pack_, "pack_rays"},
                                 {&add_light_, "add_light"},
@@ -141,27 +143,44 @@ class PathTracer::Work {
     return std::min(std::max(wanted, 1U), kPathsAtOnce);
   }
 
+  [[nodiscard]] std::size_t group_size() const {
+    return std::min<std::uint64_t>(std::bit_floor(std::max(1U, options_.work_group_size)),
+                                   std::bit_floor(context_.device().max_work_group));
+  }
+
   template <typename... Arguments>
-  void launch(const cl::Handle<cl_kernel>& kernel, std::size_t items, const Arguments&... arguments) {
+  void launch_in(std::size_t local, const cl::Handle<cl_kernel>& kernel, std::size_t items,
+                 const Arguments&... arguments) {
     cl::set_arguments(kernel.get(), arguments...);
-    const std::size_t local = std::min<std::uint64_t>(std::bit_floor(std::max(1U, options_.work_group_size)),
-                                                      std::bit_floor(context_.device().max_work_group));
     shading_.add("shade",
                  cl::enqueue(context_.queue(), kernel.get(), (items + local - 1) / local * local, local));
   }
 
   template <typename... Arguments>
-  void launch_on_scene(const cl::Handle<cl_kernel>& kernel, std::size_t items,
+  void launch(const cl::Handle<cl_kernel>& kernel, std::size_t items, const Arguments&... arguments) {
+    launch_in(group_size(), kernel, items, arguments...);
+  }
+
+  template <typename... Arguments>
+  void launch_on_scene(std::size_t local, const cl::Handle<cl_kernel>& kernel, std::size_t items,
                        const Arguments&... arguments) {
-    launch(kernel, items, tables_.frame, tables_.triangles, tables_.surface_ids, tables_.surfaces,
-           tables_.lights, tables_.emitters, tables_.links, arguments...);
+    launch_in(local, kernel, items, tables_.frame, tables_.triangles, tables_.surface_ids, tables_.surfaces,
+              tables_.lights, tables_.light_rows, tables_.emitters, tables_.links, arguments...);
+  }
+
+  // With lanes a work-group is one item, which takes as many paths.
+  void step(std::uint32_t bounce, std::uint32_t count) {
+    const std::size_t local = lanes_ ? 1 : group_size();
+    const std::uint32_t each = lanes_ ? static_cast<std::uint32_t>(group_size()) : 1;
+    launch_on_scene(local, step_, (std::size_t{count} + each - 1) / each, room_.paths, room_.rays, room_.hits,
+                    room_.owners, room_.next_rays, room_.shadow_rays, room_.lit, bounce, count, each);
   }
 
   void trace_batch(const Batch& batch, const RayObserver& observer,
                    const std::function<void(double)>& progress) {
     std::uint32_t count = batch.paths();
-    launch_on_scene(begin_, count, room_.paths, room_.rays, room_.owners, batch.first_cell, batch.cells,
-                    batch.first_sample, count);
+    launch_on_scene(group_size(), begin_, count, room_.paths, room_.rays, room_.owners, batch.first_cell,
+                    batch.cells, batch.first_sample, count);
     // Places beyond the picture have no ray.
     count = pack(count, room_.rays, room_.owners, room_.next_rays, room_.next_owners);
     for (std::uint32_t bounce = 0; count > 0; ++bounce) {
@@ -171,10 +190,9 @@ class PathTracer::Work {
       (bounce == 0 ? counts_.camera_rays : counts_.bounce_rays) += count;
       show(observer, bounce == 0 ? RayUse::kCamera : RayUse::kBounce, bounce, batch, room_.rays, room_.owners,
            count);
-      tracing_.add("trace",
-                   tracers_.closest.enqueue_closest(room_.rays.mem.get(), room_.hits.mem.get(), count));
-      launch_on_scene(step_, count, room_.paths, room_.rays, room_.hits, room_.owners, room_.next_rays,
-                      room_.shadow_rays, room_.lit, bounce, count);
+      static_cast<void>(
+          tracers_.closest.enqueue_closest(room_.rays.mem.get(), room_.hits.mem.get(), count, {}, &tracing_));
+      step(bounce, count);
       ask_lights(batch, observer, bounce, count);
       if (bounce + 1 >= options_.max_bounces) break;
       // Into the buffers just read: no kernel needs their rays any more, and pack() wants other ones to
@@ -194,8 +212,8 @@ class PathTracer::Work {
     if (asked == 0) return;
     counts_.shadow_rays += asked;
     show(observer, RayUse::kShadow, bounce + 1, batch, room_.asked_rays, room_.asked_owners, asked);
-    tracing_.add("trace",
-                 tracers_.any.enqueue_any(room_.asked_rays.mem.get(), room_.occluded.mem.get(), asked));
+    static_cast<void>(
+        tracers_.any.enqueue_any(room_.asked_rays.mem.get(), room_.occluded.mem.get(), asked, {}, &tracing_));
     launch(add_light_, asked, room_.paths, room_.asked_owners, room_.occluded, room_.lit, asked);
   }
 
@@ -237,6 +255,7 @@ class PathTracer::Work {
   }
 
   std::uint32_t at_once_;
+  bool lanes_;  // of lanes.h, where work-items do not stand side by side
   Tables tables_;
   Room room_;
   cl::Buffer film_;

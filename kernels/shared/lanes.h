@@ -19,12 +19,15 @@
 typedef float4 gn_lanes;
 typedef uint4 gn_lane_bits;
 typedef int4 gn_lane_mask;
+#define GN_LANES 4u
 #define GN_ALL(x) ((float4)(x))
 #define GN_ALL_BITS(x) ((uint4)(x))
 GN_INLINE gn_lane_bits gn_bits_of_lanes(gn_lanes x) { return as_uint4(x); }
 GN_INLINE gn_lanes gn_lanes_of_bits(gn_lane_bits x) { return as_float4(x); }
 GN_INLINE gn_lane_bits gn_whole_lanes(gn_lanes x) { return convert_uint4(x); }  // of 0 and more
 GN_INLINE gn_f32 gn_first_lane(gn_lanes x) { return x.x; }
+GN_INLINE gn_lanes gn_lanes_at(GN_GLOBAL const gn_f32* from) { return vload4(0, from); }
+GN_INLINE void gn_lanes_to(gn_lanes x, gn_f32* to) { vstore4(x, 0, to); }
 GN_INLINE int gn_any_lane(gn_lane_mask mask) {
   return any(mask);
 }
@@ -34,12 +37,15 @@ GN_INLINE int gn_any_lane(gn_lane_mask mask) {
 typedef gn_f32 gn_lanes;
 typedef gn_u32 gn_lane_bits;
 typedef int gn_lane_mask;
+#define GN_LANES 1u
 #define GN_ALL(x) (x)
 #define GN_ALL_BITS(x) (x)
 GN_INLINE gn_lane_bits gn_bits_of_lanes(gn_lanes x) { return gn_bits_of(x); }
 GN_INLINE gn_lanes gn_lanes_of_bits(gn_lane_bits x) { return gn_float_of(x); }
 GN_INLINE gn_lane_bits gn_whole_lanes(gn_lanes x) { return (gn_u32)x; }
 GN_INLINE gn_f32 gn_first_lane(gn_lanes x) { return x; }
+GN_INLINE gn_lanes gn_lanes_at(GN_GLOBAL const gn_f32* from) { return *from; }
+GN_INLINE void gn_lanes_to(gn_lanes x, gn_f32* to) { *to = x; }
 GN_INLINE int gn_any_lane(gn_lane_mask mask) {
   return mask;
 }

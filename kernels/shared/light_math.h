@@ -13,6 +13,7 @@ typedef struct GnPlace {
 } GnPlace;
 
 GN_INLINE gn_f32 gn_clamped(gn_f32 x) { return gn_max(0.0f, gn_min(1.0f, x)); }
+GN_INLINE gn_lanes gn_lanes_clamped(gn_lanes x) { return gn_lanes_max(GN_ALL(0.0f), gn_lanes_min(GN_ALL(1.0f), x)); }
 
 // Below the horizon the ground's colour comes in over so much of the height.
 #define GN_HAZE_RECIPROCAL 4.0f
@@ -49,32 +50,76 @@ GN_INLINE int gn_way_to(const gn_f32* from, const gn_f32* to, gn_f32* direction,
   return gn_make_unit(direction);
 }
 
-// About what a light would bring a place if nothing were in between: exactly so for points and suns, and never 0 where
-// an area light brings something.
-GN_INLINE gn_f32 gn_open_light(const GnPathLight* light, const GnPlace* place, gn_u32 strategy) {
-  gn_f32 direction[3], square, facing;
+// As many lights as there are lanes, from the one that `rows` stands at (path_layout.h).
+typedef struct GnLights {
+  gn_lanes kind, strength, range, cone, cone_scale, position[3], direction[3];
+} GnLights;
+
+GN_LANES_INLINE void gn_lights_at(GN_GLOBAL const gn_f32* rows, gn_u32 stride, GnLights* lights) {
   int k;
-  if (light->kind == GN_LIGHT_SUN) return gn_max(0.0f, -gn_dot(light->direction, place->normal)) * light->strength;
-  // Scattered rays find the sky as well as drawn ones would, so it is drawn only where they do not count.
-  if (light->kind == GN_LIGHT_SKY) return strategy == GN_STRATEGY_LIGHTS ? light->strength : 0.0f;
-  if (light->kind == GN_LIGHT_AREA && strategy == GN_STRATEGY_SURFACES) return 0.0f;
-  if (light->kind == GN_LIGHT_POINT) {
-    if (!gn_way_to(place->position, light->position, direction, &square)) return 0.0f;
-    facing = gn_max(0.0f, gn_dot(direction, place->normal));
-    for (k = 0; k < 3; ++k) direction[k] = -direction[k];
-    return facing * light->strength * gn_point_falloff(light, square, direction);
+  lights->kind = gn_lanes_at(rows + GN_LIGHT_KINDS * stride);
+  lights->strength = gn_lanes_at(rows + GN_LIGHT_STRENGTHS * stride);
+  lights->range = gn_lanes_at(rows + GN_LIGHT_RANGES * stride);
+  lights->cone = gn_lanes_at(rows + GN_LIGHT_CONES * stride);
+  lights->cone_scale = gn_lanes_at(rows + GN_LIGHT_CONE_SCALES * stride);
+  for (k = 0; k < 3; ++k) {
+    lights->position[k] = gn_lanes_at(rows + (GN_LIGHT_POSITIONS + (gn_u32)k) * stride);
+    lights->direction[k] = gn_lanes_at(rows + (GN_LIGHT_DIRECTIONS + (gn_u32)k) * stride);
   }
-  for (k = 0; k < 3; ++k) direction[k] = light->position[k] - place->position[k];
-  square = gn_dot(direction, direction);
+}
+
+// What points and spots bring a place that nothing hides from them: gn_way_to and gn_point_falloff, side by side.
+GN_LANES_INLINE gn_lanes gn_open_points(const GnLights* lights, const GnPlace* place, const gn_lanes* way,
+                                        gn_lanes square) {
+  const gn_lanes longest =
+      gn_lanes_max(gn_lanes_abs(way[0]), gn_lanes_max(gn_lanes_abs(way[1]), gn_lanes_abs(way[2])));
+  const gn_lanes scale = gn_powers_near_reciprocal(longest);
+  gn_lanes unit[3], unit_square, factor, facing, along, cone, nearness, window;
+  int k;
+  for (k = 0; k < 3; ++k) unit[k] = way[k] * scale;
+  unit_square = unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2];
+  factor = gn_reciprocal_roots(unit_square);
+  for (k = 0; k < 3; ++k) unit[k] = unit[k] * factor;
+  facing = gn_lanes_max(GN_ALL(0.0f), gn_lanes_dot(unit, place->normal));
+  along = lights->direction[0] * -unit[0] + lights->direction[1] * -unit[1] + lights->direction[2] * -unit[2];
+  cone = gn_lanes_clamped((along - lights->cone) * lights->cone_scale);
+  nearness = square * gn_reciprocals(lights->range * lights->range);
+  window = lights->range > 0.0f ? gn_lanes_clamped(1.0f - nearness * nearness) : GN_ALL(1.0f);
+  return unit_square > 1e-30f ? facing * lights->strength *
+                                    (window * cone * cone * gn_reciprocals(gn_lanes_max(square, GN_ALL(1e-30f))))
+                              : GN_ALL(0.0f);
+}
+
+// About what lights would bring a place if nothing were in between: exactly so for points and suns, and never 0 where
+// an area light brings something.
+GN_LANES_INLINE gn_lanes gn_open_lights(const GnLights* lights, const GnPlace* place, gn_u32 strategy) {
+  const gn_lanes none = GN_ALL(0.0f);
+  gn_lanes way[3], square, sun, point, area, sky;
+  int k;
+  for (k = 0; k < 3; ++k) way[k] = lights->position[k] - place->position[k];
+  square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+  sun = gn_lanes_max(none, -gn_lanes_dot(lights->direction, place->normal)) * lights->strength;
+  point = gn_open_points(lights, place, way, square);
+  area = lights->strength *
+         gn_reciprocals(gn_lanes_max(gn_lanes_max(square, lights->range * lights->range), GN_ALL(1e-30f)));
   // All of it behind the surface.
-  if (gn_dot(direction, place->normal) < -1.001f * light->range) return 0.0f;
-  return light->strength * gn_reciprocal(gn_max(gn_max(square, light->range * light->range), 1e-30f));
+  area = gn_lanes_dot(way, place->normal) < -1.001f * lights->range ? none : area;
+  if (strategy == GN_STRATEGY_SURFACES) area = none;
+  // Scattered rays find the sky as well as drawn ones would, so it is drawn only where they do not count.
+  sky = none;
+  if (strategy == GN_STRATEGY_LIGHTS) sky = lights->strength;
+  sky = lights->kind == (gn_f32)GN_LIGHT_SKY ? sky : area;
+  sun = lights->kind == (gn_f32)GN_LIGHT_SUN ? sun : sky;
+  return lights->kind == (gn_f32)GN_LIGHT_POINT ? point : sun;
 }
 
 // What choosing between lights goes by: the root of that. The strongest light is hidden in many places, and what others
-// bring there would be noise if they were asked seldom.
-GN_INLINE gn_f32 gn_importance(const GnPathLight* light, const GnPlace* place, gn_u32 strategy) {
-  return gn_root(gn_open_light(light, place, strategy));
+// bring there would be noise if they were asked seldom. rows: at the first of the lights.
+GN_LANES_INLINE gn_lanes gn_importances(GN_GLOBAL const gn_f32* rows, gn_u32 stride, const GnPlace* place,
+                                        gn_u32 strategy) {
+  GnLights lights;
+  gn_lights_at(rows, stride, &lights);
+  return gn_roots(gn_open_lights(&lights, place, strategy));
 }
 
 // The emitter that holds this much of its light's running area.

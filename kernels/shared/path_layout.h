@@ -35,6 +35,20 @@ typedef struct GnPathLight {
 } GnPathLight;
 GN_SIZE_IS(GnPathLight, 80);
 
+// What choosing between lights goes by, a row of numbers for each thing, light after light, so that lanes (lanes.h) read
+// side by side. Rows are gn_light_stride() long; what they hold beyond the lights brings nothing. As many as lanes follow the
+// last row, for readers that begin at any light.
+#define GN_LIGHT_KINDS 0u      // as floats
+#define GN_LIGHT_STRENGTHS 1u
+#define GN_LIGHT_RANGES 2u
+#define GN_LIGHT_CONES 3u      // cos_outer
+#define GN_LIGHT_CONE_SCALES 4u
+#define GN_LIGHT_POSITIONS 5u  // three rows
+#define GN_LIGHT_DIRECTIONS 8u
+#define GN_LIGHT_ROWS 11u
+#define GN_LIGHT_ROOM 4u       // behind the last row
+GN_INLINE gn_u32 gn_light_stride(gn_u32 lights) { return (lights + 3u) / 4u * 4u; }
+
 // A triangle of an area light, and the area of the light up to and with it.
 typedef struct GnEmitter {
   gn_u32 triangle;

@@ -13,6 +13,7 @@ typedef struct GnPathTables {
   GN_GLOBAL const gn_u32* surface_ids;  // of each triangle
   GN_GLOBAL const GnSurface* surfaces;
   GN_GLOBAL const GnPathLight* lights;
+  GN_GLOBAL const gn_f32* light_rows;
   GN_GLOBAL const GnEmitter* emitters;
   GN_GLOBAL const GnEmitterLink* links;
 } GnPathTables;
@@ -24,6 +25,9 @@ typedef struct GnPathTables {
 #define GN_PURPOSE_LIGHT 3u
 #define GN_PURPOSE_ROULETTE 4u
 #define GN_PURPOSES 4u  // for each bounce
+
+// Importances of so many lights are worked out once a place, of more each time they are looked at.
+#define GN_LIGHTS_HELD 32u
 
 #define GN_SHADOW_REACH 0.9999f  // of the distance to a light: its own surface does not hide it
 
@@ -88,19 +92,18 @@ GN_INLINE void gn_begin_path(const GnPathTables* tables, gn_u32 cell, gn_u32 sam
 GN_INLINE gn_f32 gn_met_weight(const GnPathTables* tables, const GnRay* ray, const GnPath* path, gn_u32 bounce,
                                gn_u32 light_id, gn_f32 angle) {
   GN_GLOBAL const GnPathFrame* frame = tables->frame;
-  GnPathLight light;
   GnPlace from;
   gn_f32 importance;
   int k;
   if (bounce == 0u || light_id == GN_NONE || frame->strategy == GN_STRATEGY_SURFACES) return 1.0f;
   if (frame->strategy == GN_STRATEGY_LIGHTS) return 0.0f;
-  light = tables->lights[light_id];
   // Not the normal: the ray cannot have met a light that is all behind it.
   for (k = 0; k < 3; ++k) {
     from.position[k] = ray->origin[k];
     from.normal[k] = 0.0f;
   }
-  importance = gn_importance(&light, &from, frame->strategy);
+  importance = gn_first_lane(gn_importances(tables->light_rows + light_id, gn_light_stride(frame->light_count), &from,
+                                            frame->strategy));
   if (!(angle > 0.0f) || !(path->light_sum > 0.0f)) return 1.0f;
   return gn_weight(path->density, importance * gn_reciprocal(gn_max(path->light_sum * angle, 1e-30f)));
 }
@@ -169,6 +172,13 @@ GN_INLINE int gn_aim_at(const GnPathTables* tables, const GnPathLight* light, co
   return gn_dot(ray->direction, place->normal) > 0.0f;
 }
 
+// Of as many lights as there are lanes, from `first` on, a multiple of that.
+GN_INLINE void gn_hold_importances(const GnPathTables* tables, const GnPlace* place, gn_u32 first, gn_f32* held) {
+  GN_GLOBAL const GnPathFrame* frame = tables->frame;
+  gn_lanes_to(gn_importances(tables->light_rows + first, gn_light_stride(frame->light_count), place, frame->strategy),
+              held + first % GN_LIGHTS_HELD);
+}
+
 // Draws a light in proportion to its importance here and a ray to it; lit: what that brings if the ray is free. Leaves
 // the sum of importances in the path.
 GN_INLINE void gn_ask_light(const GnPathTables* tables, const GnPlace* place, const GnBasis* basis,
@@ -176,14 +186,14 @@ GN_INLINE void gn_ask_light(const GnPathTables* tables, const GnPlace* place, co
                             GnLit* lit) {
   GN_GLOBAL const GnPathFrame* frame = tables->frame;
   gn_f32 sum = 0.0f, running = 0.0f, importance = 0.0f, angle, density, weight;
-  gn_f32 radiance[3], inside[3], reflected[3];
+  gn_f32 held[GN_LIGHTS_HELD], radiance[3], inside[3], reflected[3];
   GnPathLight light;
-  gn_u32 i;
+  gn_u32 i, lane;
   int k;
   gn_no_ray(ray);
-  for (i = 0u; i < frame->light_count; ++i) {
-    light = tables->lights[i];
-    sum = sum + gn_importance(&light, place, frame->strategy);
+  for (i = 0u; i < frame->light_count; i += GN_LANES) {
+    gn_hold_importances(tables, place, i, held);
+    for (lane = 0u; lane < GN_LANES; ++lane) sum = sum + held[i % GN_LIGHTS_HELD + lane];
   }
   path->light_sum = sum;
   if (!(sum > 0.0f)) return;
@@ -191,8 +201,8 @@ GN_INLINE void gn_ask_light(const GnPathTables* tables, const GnPlace* place, co
   lit->light = GN_NONE;
   for (i = 0u; i < frame->light_count && !(choice * sum < running); ++i) {
     gn_f32 own;
-    light = tables->lights[i];
-    own = gn_importance(&light, place, frame->strategy);
+    if (frame->light_count > GN_LIGHTS_HELD && i % GN_LANES == 0u) gn_hold_importances(tables, place, i, held);
+    own = held[i % GN_LIGHTS_HELD];
     running = running + own;
     if (own > 0.0f) {
       lit->light = i;

@@ -87,6 +87,19 @@ TEST_CASE("paths on the device bring what the reference's do, to the last bit", 
   }
 }
 
+TEST_CASE("more lights than are held at once change nothing in that", "[portable]") {
+  Scene scene = furnished();
+  for (int i = 0; i < 37; ++i) {
+    const float x = static_cast<float>(i);
+    scene.lights.push_back(point_light({x - 15.0F, 3.0F + static_cast<float>(i % 5), 9.0F}, {3.0F, 2.0F, x}));
+  }
+  PathOptions options = odd_picture();
+  options.width = 12;
+  const TracedScene traced(scene);
+  require_alike(film_of(traced, options, 1),
+                path_reference(scene, build_reference(scene.triangles), options, 1));
+}
+
 // oclgrind watches the path kernels alone: the tree comes from the host.
 TEST_CASE("a few paths on a tree from the host bring what the reference's do", "[portable][memcheck]") {
   const Scene scene = furnished();

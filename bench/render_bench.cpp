@@ -1,8 +1,8 @@
-// The question: what does a whole picture take with `--plan auto`, beside the balanced tree that is built
-// without a plan? Both in one process, one thread of PoCL: builds, planning and collapse once a round, then
-// samples in turns, a few at a time; process CPU time. The pictures are the same bits, or the bench fails.
-// What rays take, by the device's clock, is also told apart from what their paths take. JSON rows on stdout,
-// one a scene.
+// The question: what does a whole picture take with a plan (`render --plan auto`), or with shadow rays light
+// by light (`--order light`), beside the balanced tree and rays as they come? Both in one process, one thread
+// of PoCL: builds, planning and collapse once a round, then samples in turns, a few at a time; process CPU
+// time. The pictures are the same bits, or the bench fails. What rays take, by the device's clock, is also
+// told apart from what their paths take. JSON rows on stdout, one a scene and way.
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "gnomon/render/picture_tracing.h"
 #include "gnomon/render/render.h"
 #include "gnomon/scene/generators.h"
 #include "gnomon_commit.h"
@@ -27,6 +28,7 @@ constexpr std::uint64_t kSceneSeed = 1;
 
 struct Settings {
   std::vector<std::string> scenes{"atrium"};
+  std::vector<std::string> ways{"plan"};
   std::uint64_t triangles = 250'000;
   std::uint32_t size = 512;  // of the picture, both ways
   std::uint32_t samples = 64;
@@ -49,7 +51,8 @@ struct Seconds {
 // One way to make the picture: what it builds, and the picture so far.
 class Side {
  public:
-  Side(const cl::Context& context, const Scene& scene, const Settings& settings, bool planned)
+  // `way`: "plan", "light", or "balanced", which is neither.
+  Side(const cl::Context& context, const Scene& scene, const Settings& settings, const std::string& way)
       : scene_(scene) {
     RenderOptions picture;
     picture.width = picture.height = settings.size;
@@ -58,9 +61,10 @@ class Side {
     const double start = bench::cpu_seconds();
     build_ = app::build_for_use(context, scene, {}, {}, {});
     app::PlanRequest request;
-    if (!planned) request.instead = "this side";
+    if (way != "plan") request.instead = way;
     plan_ = app::plan_picture(request, picture, context, build_, scene, {});
-    tracers_ = std::make_unique<app::PlannedTracers>(context, scene_, build_, plan_, TraceOptions{});
+    tracers_ = std::make_unique<app::PlannedTracers>(
+        context, scene_, build_, plan_, picture_tracing(context.device(), scene, way == "light"));
     PathOptions how;
     how.width = how.height = settings.size;
     how.seed = settings.seed;
@@ -97,32 +101,32 @@ class Side {
 };
 
 struct Round {
-  Seconds planned, balanced;
+  Seconds ours, balanced;
 };
 
 class Bench {
  public:
   Bench(const Settings& settings, const cl::Context& context) : settings_(settings), context_(context) {}
 
-  void run(const std::string& name) {
+  void run(const std::string& name, const std::string& way) {
     const Scene scene = generate_scene(name, settings_.triangles, kSceneSeed);
-    static_cast<void>(round_of(scene, settings_.turn, 0));  // compiles what is not yet
+    static_cast<void>(round_of(scene, way, settings_.turn, 0));  // compiles what is not yet
     std::vector<Round> rounds;
-    for (int i = 0; i < settings_.rounds; ++i) rounds.push_back(round_of(scene, settings_.samples, i));
-    print(name, scene, rounds);
+    for (int i = 0; i < settings_.rounds; ++i) rounds.push_back(round_of(scene, way, settings_.samples, i));
+    print(name, scene, way, rounds);
   }
 
  private:
   // Planned for all of the settings' samples, of which so many are made.
-  Round round_of(const Scene& scene, std::uint32_t samples, int number) {
-    std::array<std::unique_ptr<Side>, 2> sides;  // with a plan, and without
+  Round round_of(const Scene& scene, const std::string& way, std::uint32_t samples, int number) {
+    std::array<std::unique_ptr<Side>, 2> sides;  // that way, and balanced
     const auto in_turn = [&](std::uint32_t turn, const auto& work) {
-      const bool planned_first = (turn + static_cast<std::uint32_t>(number)) % 2 == 0;
-      work(planned_first ? 0 : 1);
-      work(planned_first ? 1 : 0);
+      const bool ours_first = (turn + static_cast<std::uint32_t>(number)) % 2 == 0;
+      work(ours_first ? 0 : 1);
+      work(ours_first ? 1 : 0);
     };
     in_turn(0, [&](std::size_t side) {
-      sides[side] = std::make_unique<Side>(context_, scene, settings_, side == 0);
+      sides[side] = std::make_unique<Side>(context_, scene, settings_, side == 0 ? way : "balanced");
     });
     for (std::uint32_t done = 0; done < samples; done += settings_.turn) {
       const std::uint32_t some = std::min(settings_.turn, samples - done);
@@ -131,46 +135,44 @@ class Bench {
     if (sides[0]->film() != sides[1]->film())
       throw std::runtime_error("the pictures differ: a tree is wrong");
     rays_ = sides[0]->rays();
-    chosen_ = json::array();
+    plan_ = sides[0]->plan().reason;
     for (const ChosenTree& one : sides[0]->plan().chosen)
-      chosen_.push_back({{"rays", one.rays}, {"tree", one.name}, {"measured_saving", one.measured}});
-    reason_ = sides[0]->plan().reason;
+      plan_ += (plan_.empty() ? "" : "; ") + one.rays + ": " + one.name;
     return {sides[0]->seconds(), sides[1]->seconds()};
   }
 
-  void print(const std::string& name, const Scene& scene, const std::vector<Round>& rounds) const {
+  void print(const std::string& name, const Scene& scene, const std::string& way,
+             const std::vector<Round>& rounds) const {
     const auto spread = [&](const auto& of) {
       std::vector<double> values;
       for (const Round& round : rounds) values.push_back(of(round));
       return bench::spread_json(values);
     };
-    const auto side_json = [&](Seconds Round::*side) {
-      return json{{"ready_s", spread([&](const Round& r) { return (r.*side).ready; })},
-                  {"render_s", spread([&](const Round& r) { return (r.*side).render; })},
-                  {"trace_s", spread([&](const Round& r) { return (r.*side).trace; })},
-                  {"shade_s", spread([&](const Round& r) { return (r.*side).shade; })}};
+    json row = {{"schema", 1},
+                {"bench", "render"},
+                {"commit", GNOMON_COMMIT},
+                {"device", context_.device().name},
+                {"driver", context_.device().driver},
+                {"scene", name},
+                {"scene_hash", scene_hash(scene)},
+                {"triangles", scene.triangles.size()},
+                {"size", settings_.size},
+                {"samples", settings_.samples},
+                {"seed", settings_.seed},
+                {"way", way},
+                {"ray_count", rays_},
+                {"plan", plan_}};
+    const auto add = [&](const std::string& before, Seconds Round::*side) {
+      row[before + "ready_s"] = spread([&](const Round& r) { return (r.*side).ready; });
+      row[before + "render_s"] = spread([&](const Round& r) { return (r.*side).render; });
+      row[before + "trace_s"] = spread([&](const Round& r) { return (r.*side).trace; });
+      row[before + "shade_s"] = spread([&](const Round& r) { return (r.*side).shade; });
     };
-    const json row = {
-        {"schema", 1},
-        {"bench", "render"},
-        {"commit", GNOMON_COMMIT},
-        {"device", context_.device().name},
-        {"driver", context_.device().driver},
-        {"scene", name},
-        {"scene_hash", scene_hash(scene)},
-        {"triangles", scene.triangles.size()},
-        {"width", settings_.size},
-        {"height", settings_.size},
-        {"samples", settings_.samples},
-        {"seed", settings_.seed},
-        {"ray_count", rays_},
-        {"plan", reason_.empty() ? json("made") : json(reason_)},
-        {"chosen", chosen_},
-        {"planned", side_json(&Round::planned)},
-        {"balanced", side_json(&Round::balanced)},
-        {"whole_ratio", spread([](const Round& r) { return r.planned.whole() / r.balanced.whole(); })},
-        {"rays_ratio", spread([](const Round& r) { return r.planned.of_rays() / r.balanced.of_rays(); })},
-        {"trace_ratio", spread([](const Round& r) { return r.planned.trace / r.balanced.trace; })}};
+    add("", &Round::ours);
+    add("balanced_", &Round::balanced);
+    row["whole_ratio"] = spread([](const Round& r) { return r.ours.whole() / r.balanced.whole(); });
+    row["rays_ratio"] = spread([](const Round& r) { return r.ours.of_rays() / r.balanced.of_rays(); });
+    row["trace_ratio"] = spread([](const Round& r) { return r.ours.trace / r.balanced.trace; });
     std::printf("%s\n", row.dump().c_str());
     std::fflush(stdout);
   }
@@ -178,16 +180,19 @@ class Bench {
   const Settings& settings_;
   const cl::Context& context_;
   std::uint64_t rays_ = 0;
-  json chosen_;
-  std::string reason_;
+  std::string plan_;
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What a whole picture takes with a plan, beside the balanced tree.");
+  CLI::App app("What a whole picture takes with a plan, or sorted shadow rays, beside the balanced tree.");
   Settings settings;
   app.add_option("--scenes", settings.scenes, "generated scenes")->delimiter(',')->capture_default_str();
+  app.add_option("--ways", settings.ways, "plan, light: what stands beside the balanced tree")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"plan", "light"}))
+      ->capture_default_str();
   app.add_option("--triangles", settings.triangles)->capture_default_str();
   app.add_option("--size", settings.size, "of the picture, both ways")->capture_default_str();
   app.add_option("--samples", settings.samples, "a pixel")->check(CLI::Range(1, 4096))->capture_default_str();
@@ -200,7 +205,8 @@ int main(int argc, char** argv) {
   try {
     const cl::Context context = bench::one_thread_context();
     Bench bench(settings, context);
-    for (const std::string& scene : settings.scenes) bench.run(scene);
+    for (const std::string& scene : settings.scenes)
+      for (const std::string& way : settings.ways) bench.run(scene, way);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

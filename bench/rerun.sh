@@ -51,6 +51,10 @@ take_ray_aware_time() {
     --scenes "${THESIS_SCENES:?a folder}"
   "$build/bench/plan_clock_bench" generated
 }
+take_render() {
+  "$build/bench/render_bench" --scenes atrium --samples 64 --rounds 5
+  "$build/bench/render_bench" --scenes atrium,city,forest,crowd,cottage,terrain --size 256 --samples 16 --rounds 3 --ways light
+}
 take_reproduce() {
   gnomon reproduce --configs "${THESIS_CONFIGS:?the set-ups, a JSON file}" --scenes "${THESIS_SCENES:?a folder}" \
     --published "${THESIS_PUBLISHED:?the published results, a CSV file}" --rows /dev/fd/3 3>&1 >/dev/null

@@ -58,8 +58,14 @@ std::string hint(const CLI::App& program) {
   return "see gnomon " + (chosen.empty() ? std::string() : chosen.front()->get_name() + " ") + "--help";
 }
 
-// What the parser found wrong; it has no words for a subcommand that there is not.
+// What the parser found wrong; it has no words for a subcommand that there is not, and says what is missing
+// before what is not known, which is often why it is missing.
 std::string fault(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
+  const auto chosen = program.get_subcommands();
+  if (!chosen.empty() && dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    const std::vector<std::string> unknown = chosen.front()->remaining(true);
+    if (!unknown.empty()) return CLI::ExtrasError(chosen.front()->get_name(), unknown).what();
+  }
   if (argc < 2 || *argv[1] == '-' || !program.get_subcommands().empty()) return error.what();
   std::string names;
   for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))

@@ -68,6 +68,9 @@ TEST_CASE("wrong usage exits 2, says what is wrong and where help is") {
   }
   CHECK_THAT(run({"biuld", "gen:random"}, kNoDevice).err,
              Contains("no subcommand \"biuld\"") && Contains("there are devices, ") && Contains(" build, "));
+  // Not that a scene is missing: what is not known may be meant to be one.
+  CHECK_THAT(run({"trace", "--nope"}).err, Contains("--nope") && Contains("gnomon trace --help"));
+  CHECK_THAT(run({"trace"}).err, Contains("required"));
 }
 
 TEST_CASE("options are checked before anything is loaded or opened") {

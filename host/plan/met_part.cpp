@@ -4,7 +4,9 @@
 
 namespace gnomon {
 
-MetPart met_part(const Bvh& bvh, SegmentSet& segments, std::uint32_t least) {
+namespace {
+
+MetPart met_part_plain(const Bvh& bvh, SegmentSet& segments, std::uint32_t least) {
   struct Open {
     std::uint32_t node;    // of the whole tree
     std::uint32_t number;  // in `top`
@@ -13,19 +15,22 @@ MetPart met_part(const Bvh& bvh, SegmentSet& segments, std::uint32_t least) {
   MetPart part;
   part.top.nodes.resize(1);
   part.met.resize(1);
+  part.met_counts.resize(1);
   std::vector<Open> open{{0, 0, {}}};
   segments.meet(box_of(bvh.nodes[0]), segments.all(), open.back().met);
   while (!open.empty()) {
     const Open next = open.back();
     open.pop_back();
+    const std::uint32_t count = next.met.count();
     part.met[next.number] = next.met;
+    part.met_counts[next.number] = count;
     Node node = bvh.nodes[next.node];
-    if (node.count > 0 || next.met.count() < least) {
+    if (node.count > 0 || count < least) {
       node.first = static_cast<std::uint32_t>(part.subtrees.size());
       node.count = 1;
       part.top.primitives.push_back(node.first);
       part.subtrees.push_back(next.node);
-      part.counts.push_back(next.met.count());
+      part.counts.push_back(count);
       part.top.nodes[next.number] = node;
       continue;
     }
@@ -34,12 +39,31 @@ MetPart met_part(const Bvh& bvh, SegmentSet& segments, std::uint32_t least) {
     part.top.nodes[next.number] = node;
     part.top.nodes.resize(part.top.nodes.size() + 2);
     part.met.resize(part.top.nodes.size());
+    part.met_counts.resize(part.top.nodes.size());
     for (const std::uint32_t side : {1U, 0U}) {
       open.push_back({below + side, node.first + side, {}});
       segments.meet(box_of(bvh.nodes[below + side]), next.met, open.back().met);
     }
   }
   return part;
+}
+
+// The same code for machines that count bits and have wide vectors.
+#if defined(__x86_64__)
+[[gnu::target("avx2,popcnt"), gnu::flatten]] MetPart met_part_wide(const Bvh& bvh, SegmentSet& segments,
+                                                                   std::uint32_t least) {
+  return met_part_plain(bvh, segments, least);
+}
+#endif
+
+}  // namespace
+
+MetPart met_part(const Bvh& bvh, SegmentSet& segments, std::uint32_t least) {
+#if defined(__x86_64__)
+  static const bool wide = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("popcnt") != 0;
+  if (wide) return met_part_wide(bvh, segments, least);
+#endif
+  return met_part_plain(bvh, segments, least);
 }
 
 namespace {

@@ -22,6 +22,7 @@ struct MetPart {
   std::vector<std::uint32_t> subtrees;  // nodes of the whole tree
   std::vector<std::uint32_t> counts;    // of segments that meet them
   std::vector<SegmentMask> met;         // what meets each node of `top`
+  std::vector<std::uint32_t> met_counts;
 };
 
 // Nodes that `least` segments or more meet, and their children. The tree has nodes.

@@ -46,7 +46,7 @@ void SampleMover::take_back() {
     const Node& node = part_.top.nodes[i];
     Item& item = items_[i];
     item.box = box_of(node);
-    item.cost = cost(masks_[i].count(), areas_of(item.box));
+    item.cost = cost(part_.met_counts[i], areas_of(item.box));
     if (node.count > 0) {
       item.subtree = part_.top.primitives[node.first];
       continue;

@@ -12,7 +12,7 @@ namespace gnomon {
 namespace {
 
 // So few of a word's segments are looked at one by one.
-constexpr int kFew = 6;
+constexpr std::uint32_t kFew = 6;
 constexpr float kCells = 1024.0F;
 
 // Cell of the middle of what of a segment lies in the box, in Morton order.
@@ -36,6 +36,14 @@ std::uint32_t place_of(const Ray& ray, const GnBox& around) {
     key |= gn_spread_bits(cell) << (2 - k);
   }
   return key;
+}
+
+// How many bits are set. Written out: std::popcount is a call where not every processor has the instruction.
+std::uint32_t bits_in(std::uint64_t word) {
+  word -= (word >> 1U) & 0x5555555555555555U;
+  word = (word & 0x3333333333333333U) + ((word >> 2U) & 0x3333333333333333U);
+  word = (word + (word >> 4U)) & 0x0f0f0f0f0f0f0f0fU;
+  return static_cast<std::uint32_t>((word * 0x0101010101010101U) >> 56U);
 }
 
 // Vectors of the compilers' own: one source for all instruction sets.
@@ -159,12 +167,12 @@ std::uint64_t SegmentSet::block_meets(const Block& block, const GnBox& box) {
 std::uint64_t SegmentSet::meets(std::size_t word, std::uint64_t open, const GnBox& box) {
   if (open == 0) return 0;
   const Block& block = blocks_[word];
-  const int count = std::popcount(open);
+  const std::uint32_t count = bits_in(open);
   if (count > kFew) {
     wide_tests_ += 1;
     return block_meets(block, box) & open;
   }
-  single_tests_ += static_cast<std::uint64_t>(count);
+  single_tests_ += count;
   std::uint64_t out = 0;
   for (std::uint64_t left = open; left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);

@@ -33,6 +33,7 @@ class Walk {
     if (bvh_.nodes.empty()) return;
     std::vector<Waiting> waiting;
     if (!(entry_of(0) < GN_INFINITY)) return;
+    waiting.reserve(64);  // deep enough for most
     waiting.push_back({0, ray_.tmin});
     while (!waiting.empty()) {
       const Waiting next = waiting.back();

@@ -132,6 +132,28 @@ TEST_CASE("of equally near triangles in one block, and of nearly as near ones, f
     require_equal_flavours(triangles, rays, gnomon::test::lazy_leaves_of(leaf));
 }
 
+TEST_CASE("faces in one plane are told apart whatever is met before, between and after them", "[unlimited]") {
+  Triangles triangles;
+  gnomon::test::Random random(103);
+  for (int i = 0; i < 240; ++i) {
+    // Two to four faces in each of some planes, a few units in the last place off at times, numbers at
+    // random.
+    float z = static_cast<float>(random.below(80));
+    if (random.below(4) == 0) z = std::nextafter(z, 100.0F);
+    const float x = random.between(-9, 3);
+    triangles.push_back(gnomon::test::triangle({x, -5, z}, {x + 20, -5, z}, {x + 8, 20, z}));
+  }
+  Rays rays;
+  for (int i = 0; i < 400; ++i) {
+    const bool up = i % 2 == 0;
+    const float slant = i % 4 < 2 ? 0.0F : random.between(-0.05F, 0.05F);
+    rays.push_back(ray({random.between(-2, 10), random.between(-2, 8), up ? -3.0F : random.between(0, 90)},
+                       {slant, 0, up ? 1.0F : -1.0F}));
+  }
+  for (const std::uint32_t leaf : {1U, 3U, 8U, 255U})
+    require_equal_flavours(triangles, rays, gnomon::test::lazy_leaves_of(leaf));
+}
+
 TEST_CASE("the flavours agree on ranges that end or begin next to a hit", "[unlimited]") {
   const auto triangles = gnomon::test::soup(1000, 106, 1.0F);
   const Rays rays = gnomon::test::random_rays(300, 107);

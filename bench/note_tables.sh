@@ -128,4 +128,13 @@ table speed.md speed speed.jsonl '
   over("portable over wide, bounce"; "closest hit"; "bounce"),
   over("portable over wide, shadow"; "any hit"; "shadow")'
 
+# The newest rows of whole pictures.
+table ray-aware.md "whole pictures" render.jsonl '
+  last.commit as $new | map(select(.commit == $new)) | . as $rows |
+  def cell: "\(.median | fixed(3)) (\(.min | fixed(3))–\(.max | fixed(3)))";
+  "Commit \($new), \($rows[0].device), one thread.", "",
+  (["picture", "way", "whole", "building, planning, rays", "rays", "balanced: rays, shading, s"] | line), "|---|---|---|---|---|---|",
+  ($rows[] | ["\(.scene) \(.triangles), \(.size)², \(.samples) samples", .way, (.whole_ratio | cell), (.rays_ratio | cell),
+    (.trace_ratio | cell), "\(.balanced_trace_s.median | fixed(1)), \(.balanced_shade_s.median | fixed(1))"] | line)'
+
 [ "$behind" = 0 ] || [ "$check" != --check ]

@@ -53,7 +53,7 @@ take_ray_aware_time() {
 }
 take_render() {
   "$build/bench/render_bench" --scenes atrium --samples 64 --rounds 5
-  "$build/bench/render_bench" --scenes atrium,city,forest,crowd,cottage,terrain --size 256 --samples 16 --rounds 3 --ways light
+  "$build/bench/render_bench" --scenes atrium,city,terrain,forest,crowd,cottage --size 256 --samples 8 --rounds 5 --ways light
 }
 take_reproduce() {
   gnomon reproduce --configs "${THESIS_CONFIGS:?the set-ups, a JSON file}" --scenes "${THESIS_SCENES:?a folder}" \

@@ -23,12 +23,6 @@ constexpr double kSavedEnough = 0.15;
 // Probes that tell whether boxes in a frame can pay at all.
 constexpr std::size_t kFramedProbes = 64;
 
-void require(bool ok, const std::string& option, const std::string& value, const std::string& range) {
-  if (ok) return;
-  throw Error(ErrorCode::kInvalidArgument,
-              "plan option " + option + " = " + value + " is outside its range " + range);
-}
-
 std::string number(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
@@ -83,8 +77,12 @@ class Chooser {
       return;
     }
     if (name.starts_with("light")) {
-      require(options_.light_space, "choice", name,
-              "here: this use of a plan takes no boxes in a frame (PlanOptions::light_space)");
+      if (!options_.light_space) {
+        throw Error(ErrorCode::kInvalidArgument,
+                    "plan option choice = " + name +
+                        " is outside its range here: this use of a plan takes no boxes in a frame "
+                        "(PlanOptions::light_space)");
+      }
       decision_.framed_share = pool_.framed_share();
     }
     PlanPool::Entry entry = pool_.make(name);
@@ -270,52 +268,6 @@ class Chooser {
 
 }  // namespace
 
-const std::vector<std::string>& candidate_names() {
-  static const std::vector<std::string> names{"sah",      "sah-order",  "sah-mix",   "sah-rays",
-                                              "best",     "best-order", "best-rays", "mix",
-                                              "mix-rays", "light-mix",  "light-rays"};
-  return names;
-}
-
-OptimiseOptions thorough() {
-  OptimiseOptions options;
-  options.share = 0.25F;
-  options.max_passes = 12;
-  options.leave_settled = true;
-  return options;
-}
-
-void PlanOptions::check() const {
-  const auto& names = candidate_names();
-  std::string all = "auto";
-  for (const std::string& name : names) all += ", " + name;
-  require(choice == "auto" || std::find(names.begin(), names.end(), choice) != names.end(), "choice", choice,
-          "of " + all);
-  require(fit_rays >= 1 && fit_rays <= kMostSegments, "fit_rays", std::to_string(fit_rays),
-          "1.." + std::to_string(kMostSegments));
-  require(probe_rays >= 1 && probe_rays <= 65536, "probe_rays", std::to_string(probe_rays), "1..65536");
-  for (const float share : {mixture_share, every_share})
-    require(share >= 0.0F && share <= 1.0F, "mixture_share or every_share", std::to_string(share), "[0, 1]");
-  SampleMeasure{{1.0F, 1.0F, 1.0F}, prior_share}.check();
-  optimise.check();
-  sampled.check();
-  for (const double share : {sample_share, probe_share})
-    require(share >= 0.0 && std::isfinite(share), "sample_share or probe_share", std::to_string(share),
-            "of finite numbers >= 0");
-  require(least_oblique >= 1.0, "least_oblique", std::to_string(least_oblique), "of numbers >= 1");
-  for (const double share : {most_framed, most_framed_every})
-    require(share >= 0.0, "most_framed or most_framed_every", std::to_string(share), "of numbers >= 0");
-  require(most_framed_cost >= 0.0, "most_framed_cost", std::to_string(most_framed_cost), "of numbers >= 0");
-  for (const double work : {framed_work, packet_work})
-    require(work >= 1.0 && std::isfinite(work), "framed_work or packet_work", std::to_string(work),
-            "of finite numbers >= 1");
-  race.check();
-  for (const double price :
-       {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish, prices.divide,
-        prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})
-    require(price >= 0.0 && std::isfinite(price), "prices", std::to_string(price), "of finite numbers >= 0");
-}
-
 PlanBuilder reference_builder() {
   return {[](std::span<const Triangle> triangles, const BuildOptions& options) {
             return build_reference(triangles, options);
@@ -332,8 +284,11 @@ Plan make_plan(std::span<const Triangle> triangles, std::span<const PlanRays> ra
   plan.trees.push_back(pool.baseline());
   plan.baseline_units = pool.baseline_units();
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    require(rays[i].expected >= 0.0 && std::isfinite(rays[i].expected), "expected rays of " + rays[i].name,
-            std::to_string(rays[i].expected), "of finite numbers >= 0");
+    if (!(rays[i].expected >= 0.0 && std::isfinite(rays[i].expected))) {
+      throw Error(ErrorCode::kInvalidArgument, "expected rays of " + rays[i].name + " = " +
+                                                   std::to_string(rays[i].expected) +
+                                                   " are no finite number >= 0");
+    }
     report(progress, rays[i].name, static_cast<double>(i + 1) / static_cast<double>(rays.size() + 1));
     Decision decision = Chooser(triangles, rays[i], options, pool, plan.trees).run();
     plan.planning_units += decision.probe_units;

@@ -3,6 +3,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <map>
 
 #include "gnomon/cl/launch.h"
 #include "gnomon/device/ray_batches.h"
@@ -179,6 +180,29 @@ TEST_CASE("sorting works in passes and from the caller's buffers") {
     occluded.resize(count);
     REQUIRE(context().download_values<std::uint32_t>(answers, count) == occluded);
   }
+}
+
+TEST_CASE("a caller who asks for times gets those of sorting, too") {
+  const auto tree = build_device(context(), test::soup(300, 46));
+  const Rays rays = test::random_rays(2000, 47);
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  const cl::Buffer ray_buffer = context().create_buffer("rays", rays.size() * sizeof(GnRay));
+  const cl::Buffer answers = context().create_buffer("answers", rays.size() * sizeof(GnHit));
+  context().upload_values<GnRay>(ray_buffer, rays);
+  const auto stages = [&](const TraceOptions& options) {
+    const Tracer tracer(context(), tree, options);
+    cl::StageTimes times;
+    cl::wait(tracer.enqueue_closest(ray_buffer.mem.get(), answers.mem.get(), count, {}, &times));
+    std::map<std::string, double> out;
+    for (const auto& [stage, ms] : times.milliseconds()) out[stage] = ms;
+    return out;
+  };
+  const auto plain = stages({});
+  REQUIRE(plain.size() == 1);
+  REQUIRE(plain.at("trace") > 0.0);
+  const auto sorted = stages(sorting(TraceFlavour::kAuto));
+  REQUIRE(sorted.at("trace") > 0.0);
+  REQUIRE(sorted.at("sort rays") > 0.0);
 }
 
 TEST_CASE("sorting works on wide trees, and each ray's counters are its own", "[unlimited]") {

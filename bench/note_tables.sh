@@ -91,9 +91,8 @@ table reproduction.md predictions reproduce.jsonl '
    (if $wide == [] then " | |" else
       " | \($wide[0].error | fabs | percent) (noise \($wide[0] | noise | percent)) |" end))'
 
-# Ratios to Embree of the newest rows, a line for each figure that is asked for.
-table speed.md speed speed.jsonl '
-  last.commit as $new | map(select(.commit == $new and .triangles > 900000 and .threads == 1)) as $rows |
+# Ratios to Embree of the newest rows, a line for each figure that is asked for; of one thread, or of all.
+speed='  map(select(.triangles > 900000 and (.threads == 1) == $one)) | last.commit as $new | map(select(.commit == $new)) as $rows |
   ["atrium", "terrain", "random", "city"] as $scenes |
   def geomean: (map(log) | add / length | exp);
   def cell: .ratio | "\(.median | fixed(2)) (\(.min | fixed(2))–\(.max | fixed(2)))";
@@ -103,6 +102,8 @@ table speed.md speed speed.jsonl '
     [$scenes[] | found(.; $task; $rays; $ours; $peer; $many) | select(. != null)] as $found |
     "| \($name) | " + ([$scenes[] | found(.; $task; $rays; $ours; $peer; $many) | if . == null then "–" else cell end] | join(" | ")) +
     " | \([$found[].ratio.median] | geomean | fixed(2)) |";
+'
+table speed.md speed speed.jsonl "true as \$one | $speed"'
   def over($name; $task; $rays):
     [$scenes[] | (found(.; $task; $rays; "portable"; "MEDIUM 1"; false).ratio.median /
                   found(.; $task; $rays; "wide"; "MEDIUM 1"; false).ratio.median)] as $shares |
@@ -127,6 +128,15 @@ table speed.md speed speed.jsonl '
   entry("its tree, shadow, single"; "any hit"; "shadow"; "wide"; "HIGH 1"; false),
   over("portable over wide, bounce"; "closest hit"; "bounce"),
   over("portable over wide, shadow"; "any hit"; "shadow")'
+table speed.md "all threads" speed.jsonl "false as \$one | $speed"'
+  "Commit \($new), \($rows[0].device), \($rows[0].threads) threads.", "",
+  (["", "atrium", "terrain", "random", "city", "geomean"] | line), "|---|---|---|---|---|---|",
+  entry("closest hit, bounce, single"; "closest hit"; "bounce"; "wide"; "MEDIUM 1"; null),
+  entry("the same, ROBUST"; "closest hit"; "bounce"; "wide"; "MEDIUM ROBUST 1"; null),
+  entry("any hit, shadow, single"; "any hit"; "shadow"; "wide"; "MEDIUM 1"; null),
+  entry("balanced, MEDIUM"; "build"; null; "balanced"; "MEDIUM"; null),
+  entry("fast, LOW"; "build"; null; "fast"; "LOW"; null),
+  entry("best, HIGH"; "build"; null; "best"; "HIGH"; null)'
 
 # The newest rows of whole pictures.
 table ray-aware.md "whole pictures" render.jsonl '

@@ -75,6 +75,8 @@ take_speed() {
   beside_embree --scenes city --ray-count 262144 --rounds 5 --rays $coherent --flavours packet,wide --no-build
   beside_embree --scenes atrium,terrain,city --ray-count 262144 --rounds 5 --no-build \
     --rays point-shuffled,sun-axis-shuffled,sun-oblique-shuffled,shadow-shuffled --flavours packet,sorted,light-sorted
+  beside_embree --scenes atrium,terrain,random,city --ray-count 131072 --rounds 5 --all-threads --rays bounce,shadow \
+    --flavours wide --builders balanced,fast,best
   beside_embree --scenes atrium,terrain,random,city --triangles 100000 --rounds 9 --ray-count 131072 \
     --rays primary,bounce --flavours packet,wide --builders balanced,fast
 }

@@ -30,18 +30,6 @@ GN_INLINE void gn_sky_radiance(GN_GLOBAL const GnPathFrame* frame, const gn_f32*
   }
 }
 
-// The share of a point light's intensity that arrives per area across the way, `square` away, as seen from it along
-// `from` (unit).
-GN_INLINE gn_f32 gn_point_falloff(const GnPathLight* light, gn_f32 square, const gn_f32* from) {
-  const gn_f32 cone = gn_clamped((gn_dot(light->direction, from) - light->cos_outer) * light->cone_scale);
-  gn_f32 window = 1.0f;
-  if (light->range > 0.0f) {
-    const gn_f32 nearness = square * gn_reciprocal(light->range * light->range);
-    window = gn_clamped(1.0f - nearness * nearness);
-  }
-  return window * cone * cone * gn_reciprocal(gn_max(square, 1e-30f));
-}
-
 // The way from a place to a point: its square, and the unit direction; 0 where they are the same.
 GN_INLINE int gn_way_to(const gn_f32* from, const gn_f32* to, gn_f32* direction, gn_f32* square) {
   int k;
@@ -68,33 +56,40 @@ GN_LANES_INLINE void gn_lights_at(GN_GLOBAL const gn_f32* rows, gn_u32 stride, G
   }
 }
 
-// What points and spots bring a place that nothing hides from them: gn_way_to and gn_point_falloff, side by side.
+// The share of point lights' intensity that arrives per area across the way, `square` away, as seen from them along
+// `from` (unit).
+GN_LANES_INLINE gn_lanes gn_point_falloffs(const GnLights* lights, gn_lanes square, const gn_lanes* from) {
+  const gn_lanes along = lights->direction[0] * from[0] + lights->direction[1] * from[1] + lights->direction[2] * from[2];
+  const gn_lanes cone = gn_lanes_clamped((along - lights->cone) * lights->cone_scale);
+  const gn_lanes nearness = square * gn_reciprocals(lights->range * lights->range);
+  const gn_lanes window = lights->range > 0.0f ? gn_lanes_clamped(1.0f - nearness * nearness) : GN_ALL(1.0f);
+  return window * cone * cone * gn_reciprocals(gn_lanes_max(square, GN_ALL(1e-30f)));
+}
+
+// What points and spots bring a place that nothing hides from them; the way there by gn_way_to, side by side.
 GN_LANES_INLINE gn_lanes gn_open_points(const GnLights* lights, const GnPlace* place, const gn_lanes* way,
                                         gn_lanes square) {
   const gn_lanes longest =
       gn_lanes_max(gn_lanes_abs(way[0]), gn_lanes_max(gn_lanes_abs(way[1]), gn_lanes_abs(way[2])));
   const gn_lanes scale = gn_powers_near_reciprocal(longest);
-  gn_lanes unit[3], unit_square, factor, facing, along, cone, nearness, window;
+  gn_lanes unit[3], from[3], unit_square, factor, facing;
   int k;
   for (k = 0; k < 3; ++k) unit[k] = way[k] * scale;
   unit_square = unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2];
   factor = gn_reciprocal_roots(unit_square);
-  for (k = 0; k < 3; ++k) unit[k] = unit[k] * factor;
+  for (k = 0; k < 3; ++k) {
+    unit[k] = unit[k] * factor;
+    from[k] = -unit[k];
+  }
   facing = gn_lanes_max(GN_ALL(0.0f), gn_lanes_dot(unit, place->normal));
-  along = lights->direction[0] * -unit[0] + lights->direction[1] * -unit[1] + lights->direction[2] * -unit[2];
-  cone = gn_lanes_clamped((along - lights->cone) * lights->cone_scale);
-  nearness = square * gn_reciprocals(lights->range * lights->range);
-  window = lights->range > 0.0f ? gn_lanes_clamped(1.0f - nearness * nearness) : GN_ALL(1.0f);
-  return unit_square > 1e-30f ? facing * lights->strength *
-                                    (window * cone * cone * gn_reciprocals(gn_lanes_max(square, GN_ALL(1e-30f))))
-                              : GN_ALL(0.0f);
+  return unit_square > 1e-30f ? facing * lights->strength * gn_point_falloffs(lights, square, from) : GN_ALL(0.0f);
 }
 
 // About what lights would bring a place if nothing were in between: exactly so for points and suns, and never 0 where
 // an area light brings something.
 GN_LANES_INLINE gn_lanes gn_open_lights(const GnLights* lights, const GnPlace* place, gn_u32 strategy) {
   const gn_lanes none = GN_ALL(0.0f);
-  gn_lanes way[3], square, sun, point, area, sky;
+  gn_lanes way[3], square, sun, point, area, sky, brought;
   int k;
   for (k = 0; k < 3; ++k) way[k] = lights->position[k] - place->position[k];
   square = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
@@ -108,9 +103,9 @@ GN_LANES_INLINE gn_lanes gn_open_lights(const GnLights* lights, const GnPlace* p
   // Scattered rays find the sky as well as drawn ones would, so it is drawn only where they do not count.
   sky = none;
   if (strategy == GN_STRATEGY_LIGHTS) sky = lights->strength;
-  sky = lights->kind == (gn_f32)GN_LIGHT_SKY ? sky : area;
-  sun = lights->kind == (gn_f32)GN_LIGHT_SUN ? sun : sky;
-  return lights->kind == (gn_f32)GN_LIGHT_POINT ? point : sun;
+  brought = lights->kind == (gn_f32)GN_LIGHT_SKY ? sky : area;
+  brought = lights->kind == (gn_f32)GN_LIGHT_SUN ? sun : brought;
+  return lights->kind == (gn_f32)GN_LIGHT_POINT ? point : brought;
 }
 
 // What choosing between lights goes by: the root of that. The strongest light is hidden in many places, and what others

@@ -125,7 +125,7 @@ GN_INLINE void gn_meet_sky(const GnPathTables* tables, const GnRay* ray, GnPath*
 
 // A direction towards a light, drawn, with the radiance that comes from there and the reciprocal of the density by
 // solid angle, which of points and suns is 1 and their radiance irradiance. 0: nothing comes.
-GN_INLINE int gn_aim_at(const GnPathTables* tables, const GnPathLight* light, const GnPlace* place,
+GN_INLINE int gn_aim_at(const GnPathTables* tables, gn_u32 light_id, const GnPathLight* light, const GnPlace* place,
                         const GnBasis* basis, const gn_f32* point, GnRay* ray, gn_f32* radiance, gn_f32* angle) {
   gn_f32 square = 0.0f;
   int k;
@@ -142,10 +142,13 @@ GN_INLINE int gn_aim_at(const GnPathTables* tables, const GnPathLight* light, co
     gn_sky_radiance(tables->frame, ray->direction, radiance);
     *angle = GN_PI * gn_reciprocal(inside[2]);
   } else if (light->kind == GN_LIGHT_POINT) {
-    gn_f32 from[3], falloff;
+    GnLights same;
+    gn_lanes from[3];
+    gn_f32 falloff;
     if (!gn_way_to(place->position, light->position, ray->direction, &square)) return 0;
-    for (k = 0; k < 3; ++k) from[k] = -ray->direction[k];
-    falloff = gn_point_falloff(light, square, from);
+    gn_lights_at(tables->light_rows + light_id, gn_light_stride(tables->frame->light_count), &same);
+    for (k = 0; k < 3; ++k) from[k] = GN_ALL(-ray->direction[k]);
+    falloff = gn_first_lane(gn_point_falloffs(&same, GN_ALL(square), from));
     for (k = 0; k < 3; ++k) radiance[k] = light->color[k] * falloff;
     ray->tmax = GN_SHADOW_REACH * gn_root(square);
   } else {
@@ -211,7 +214,7 @@ GN_INLINE void gn_ask_light(const GnPathTables* tables, const GnPlace* place, co
   }
   if (lit->light == GN_NONE) return;
   light = tables->lights[lit->light];
-  if (!gn_aim_at(tables, &light, place, basis, point, ray, radiance, &angle)) {
+  if (!gn_aim_at(tables, lit->light, &light, place, basis, point, ray, radiance, &angle)) {
     gn_no_ray(ray);
     return;
   }

@@ -148,4 +148,27 @@ static inline void put_in_order(uint mask, __global const uint* links, uint* lin
 #endif
 }
 
+// Keeps of what waits, `count` of it, what is entered no further than limit, in its order; returns how much that is. Both
+// arrays may be read eight beyond count.
+static inline uint keep_near(uint* keys, uint* links, uint count, float limit) {
+  const int most = as_int(limit) | 7;
+  uint i, kept = 0u;
+#if GN_EIGHT_AVX512
+  for (i = 0u; i < count; i += 8u) {
+    const int8 these = as_int8(vload8(0, keys + i)), theirs = as_int8(vload8(0, links + i));
+    const uint mask = bits_of_lanes(these <= most) & (count - i < 8u ? (1u << (count - i)) - 1u : 255u);
+    vstore8(as_uint8(__builtin_ia32_compresssi256_mask(these, (int8)0, (uchar)mask)), 0, keys + kept);
+    vstore8(as_uint8(__builtin_ia32_compresssi256_mask(theirs, (int8)0, (uchar)mask)), 0, links + kept);
+    kept += popcount(mask);
+  }
+#else
+  for (i = 0u; i < count; ++i) {
+    keys[kept] = keys[i];
+    links[kept] = links[i];
+    kept += (int)keys[i] <= most;
+  }
+#endif
+  return kept;
+}
+
 #endif

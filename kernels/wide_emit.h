@@ -82,7 +82,6 @@ static inline void write_empty_node(__global GnWideNode* out) {
     vstore8((float8)(-INFINITY), k + 1u, planes);
   }
   vstore8((uint8)(GN_NONE), 0, out->links);
-  vstore8((uint8)(0u), 0, out->pad);
 }
 
 // Numbers the wide node on top of the stack, whose children are `slots`, and writes it (write != 0). Puts the children that

@@ -1,9 +1,10 @@
 // Rays through the wide tree one by one, eight boxes or eight triangles a step. Closest hit visits children by distance, any
 // hit the last slot first. Hits are those of trace.cl, bit for bit.
 // A step is short and ends with the next node's address, which nothing can foresee: a processor would wait for memory and
-// for branches it guessed wrong. So several rays take steps by turns: while one's node is on its way from memory, others
-// compute, and steps of different rays, which do not depend on each other, run side by side.
-// Options: GN_WIDE_STACK (at least 7 * depth of the wide tree + 8), GN_COUNTERS, GN_PORTABLE (eight.h), GN_RAYS_AT_ONCE
+// for branches it guessed wrong. So several rays take steps by turns, first all that look at a node, then all that look at
+// a leaf: while one's node is on its way from memory, others compute; steps of different rays, which do not depend on each
+// other, run side by side; and neither what a ray looks at next nor whether it is done decides a branch.
+// Options: GN_WIDE_STACK (at least 7 * depth of the wide tree + 9), GN_COUNTERS, GN_PORTABLE (eight.h), GN_RAYS_AT_ONCE
 // (1: one after the other, each in a loop of its own, for devices that end long loops), GN_FRAME (wide_leaf.h).
 // Feeds trace_wide.cl, trace_packet.cl.
 #ifndef GNOMON_WIDE_WALK_H
@@ -73,7 +74,8 @@ static inline GnWideWalk start_walk(const GnRay* ray) {
   return walk;
 }
 
-// A ray on its way: the node or leaf it looks at next, and those that wait, with where it enters them.
+// A ray on its way: the node or leaf it looks at next, GN_NONE when it is done, and those that wait, with where it enters
+// them. At the bottom lies GN_NONE, so that taking the next is no question.
 typedef struct GnWalker {
   GnWideRay ray;
   GnWideWalk walk;
@@ -99,6 +101,9 @@ typedef struct GnWideBatch {
 #endif
 } GnWideBatch;
 
+// Of a node all, of a leaf what most have.
+#define GN_SENT_FOR (4u * GN_CACHE_LINE)
+
 // What kernels take beyond the others' parameters for boxes in a frame, and put at a batch's end.
 #if GN_FRAME
 #define GN_FRAME_PARAMETER , __global const GnBoxFrame* boxes
@@ -114,39 +119,45 @@ static inline void send_for(const GnWideBatch* batch, uint link) {
   const int is_leaf = (link & GN_LEAF_LINK) != 0u;
   __global const char* at = is_leaf ? (__global const char*)(batch->blocks + gn_link_block(link))
                                     : (__global const char*)(batch->nodes + link);
-  expect_range(at, sizeof(GnWideNode));
+  expect_range(at, GN_SENT_FOR);
 }
 
-// One node or leaf. Returns 0 when the walk is over. All children met go onto the stack and the nearest, or for any hit the
-// last, comes off again: how many they are decides no branch.
-static inline int step(GnWalker* walker, const GnWideBatch* batch, int any_hit) {
-  GnWideWalk* walk = &walker->walk;
-  uint height = walker->height;
-  if ((walker->current & GN_LEAF_LINK) != 0u) {
-    if (test_wide_leaf(walk, &walker->ray, batch->blocks, walker->current, any_hit)) return 0;
-  } else {
-    __global const GnWideNode* node = batch->nodes + walker->current;
-    float8 entries;
-    const uint met = boxes_met(&walker->ray, node, walk->limit, &entries);
-    const uint count = popcount(met);
-    GN_COUNT_BOXES(node);
-    if (any_hit) {
-      put_in_order(met, node->links, walker->links + height);
-    } else {
-      put_by_distance(GN_MAX8(entries, (float8)0.0f), met, count, node->links, walker->keys + height,
-                      walker->links + height);
-    }
-    height += count;
-  }
-  // The next that waits and is not beyond the best hit found since it was put there.
-  do {
-    if (height == 0u) return 0;
-    height -= 1u;
-  } while (!any_hit && as_float(walker->keys[height] & ~7u) > fmax(walk->limit, 0.0f));
-  walker->height = height;
-  walker->current = walker->links[height];
+static inline void take_next(GnWalker* walker, const GnWideBatch* batch, uint height) {
+  walker->height = height - 1u;
+  walker->current = walker->links[height - 1u];
   send_for(batch, walker->current);
-  return 1;
+}
+
+// All children met go onto the stack and the nearest, or for any hit the last, comes off again: how many they are decides
+// no branch.
+static inline void step_node(GnWalker* walker, const GnWideBatch* batch, int any_hit) {
+  GnWideWalk* walk = &walker->walk;
+  const uint height = walker->height;
+  __global const GnWideNode* node = batch->nodes + walker->current;
+  float8 entries;
+  const uint met = boxes_met(&walker->ray, node, walk->limit, &entries);
+  const uint count = popcount(met);
+  GN_COUNT_BOXES(node);
+  if (any_hit) {
+    put_in_order(met, node->links, walker->links + height);
+  } else {
+    put_by_distance(GN_MAX8(entries, (float8)0.0f), met, count, node->links, walker->keys + height,
+                    walker->links + height);
+  }
+  take_next(walker, batch, height + count);
+}
+
+// A nearer hit leaves nothing waiting that is entered beyond it: then whatever comes off the stack is worth a look.
+static inline void step_leaf(GnWalker* walker, const GnWideBatch* batch, int any_hit) {
+  const float limit = walker->walk.limit;
+  if (test_wide_leaf(&walker->walk, &walker->ray, batch->blocks, walker->current, any_hit)) {
+    walker->current = GN_NONE;
+    return;
+  }
+  if (!any_hit && walker->walk.limit < limit) {
+    walker->height = keep_near(walker->keys, walker->links, walker->height, fmax(walker->walk.limit, 0.0f));
+  }
+  take_next(walker, batch, walker->height);
 }
 
 static inline void hand_over(GnWalker* walker, const GnWideBatch* batch, int any_hit) {
@@ -173,7 +184,9 @@ static inline uint take_up(GnWalker* walker, const GnWideBatch* batch, uint inde
   walker->walk = start_walk(&ray);
   walker->index = index;
   walker->current = 0u;
-  walker->height = 0u;
+  walker->height = 1u;
+  walker->links[0] = GN_NONE;
+  walker->keys[0] = 0u;
   if (gn_ray_is_valid(&ray)) {
     GN_TAKE_RAY(&walker->ray, &ray, batch);
     return 1u;
@@ -183,30 +196,76 @@ static inline uint take_up(GnWalker* walker, const GnWideBatch* batch, uint inde
   return 0u;
 }
 
+#if GN_RAYS_AT_ONCE > 1
+// Which of the walkers look at a node next, which at a leaf, and which are done. A ray goes from one list to another without
+// a branch: where it goes next cannot be foreseen.
+typedef struct GnTurns {
+  uint at_nodes[GN_RAYS_AT_ONCE];
+  uint at_leaves[GN_RAYS_AT_ONCE];
+  uint done[GN_RAYS_AT_ONCE];
+  uint nodes;
+  uint leaves;
+  uint ended;
+} GnTurns;
+
+static inline void sort_in(GnTurns* turns, uint walker, uint link) {
+  const uint is_node = (link & GN_LEAF_LINK) == 0u, is_done = link == GN_NONE;
+  turns->at_nodes[turns->nodes] = walker;
+  turns->nodes += is_node;
+  turns->at_leaves[turns->leaves] = walker;
+  turns->leaves += 1u - is_node - is_done;
+  turns->done[turns->ended] = walker;
+  turns->ended += is_done;
+}
+#endif
+
 // Traces rays [index, end).
 static inline void trace_singly(const GnWideBatch* batch, uint index, uint end, int any_hit) {
 #if GN_RAYS_AT_ONCE > 1
   GnWalker walkers[GN_RAYS_AT_ONCE];
-  uint on_way[GN_RAYS_AT_ONCE], count = 0u, turn = 0u;
-  for (; index < end && count < GN_RAYS_AT_ONCE; ++index) {
-    on_way[count] = count;
-    count += take_up(walkers + count, batch, index, any_hit);
+  GnTurns turns;
+  turns.nodes = 0u;
+  turns.leaves = 0u;
+  turns.ended = 0u;
+  for (; index < end && turns.nodes < GN_RAYS_AT_ONCE; ++index) {
+    turns.at_nodes[turns.nodes] = turns.nodes;
+    turns.nodes += take_up(walkers + turns.nodes, batch, index, any_hit);
   }
-  while (count > 0u) {
-    GnWalker* walker = walkers + on_way[turn];
-    uint goes_on = (uint)step(walker, batch, any_hit);
-    if (!goes_on) {
-      hand_over(walker, batch, any_hit);
-      for (; !goes_on && index < end; ++index) goes_on = take_up(walker, batch, index, any_hit);
-      if (!goes_on) on_way[turn] = on_way[--count];
+  while (turns.nodes + turns.leaves > 0u) {
+    uint i, count = turns.nodes;
+    turns.nodes = 0u;
+    for (i = 0u; i < count; ++i) {
+      const uint at = turns.at_nodes[i];
+      step_node(walkers + at, batch, any_hit);
+      sort_in(&turns, at, walkers[at].current);
     }
-    turn = turn + goes_on < count ? turn + goes_on : 0u;
+    count = turns.leaves;
+    turns.leaves = 0u;
+    for (i = 0u; i < count; ++i) {
+      const uint at = turns.at_leaves[i];
+      step_leaf(walkers + at, batch, any_hit);
+      sort_in(&turns, at, walkers[at].current);
+    }
+    for (i = 0u; i < turns.ended; ++i) {
+      const uint at = turns.done[i];
+      uint goes_on = 0u;
+      hand_over(walkers + at, batch, any_hit);
+      for (; !goes_on && index < end; ++index) goes_on = take_up(walkers + at, batch, index, any_hit);
+      turns.at_nodes[turns.nodes] = at;
+      turns.nodes += goes_on;
+    }
+    turns.ended = 0u;
   }
 #else
   GnWalker walker;
   for (; index < end; ++index) {
     if (!take_up(&walker, batch, index, any_hit)) continue;
-    while (step(&walker, batch, any_hit)) {
+    while (walker.current != GN_NONE) {
+      if ((walker.current & GN_LEAF_LINK) != 0u) {
+        step_leaf(&walker, batch, any_hit);
+      } else {
+        step_node(&walker, batch, any_hit);
+      }
     }
     hand_over(&walker, batch, any_hit);
   }

@@ -14,9 +14,9 @@ constexpr std::size_t kBatchInPasses = 1U << 15U;
 // Turns of loops that one step may cost the up to 16 rays a device's vector unit traces side by side.
 constexpr std::uint32_t kTurnsPerStep = 64;
 
-// Rays of a CPU's work-item that take steps by turns (wide_walk.h): from eight on their walkers' number
-// changes nothing, and eight leave room in the first-level cache.
-constexpr std::uint32_t kRaysAtOnce = 8;
+// Rays of a CPU's work-item that take steps by turns (wide_walk.h): fewer leave lists of which each round's
+// end is guessed wrong more often, with more their walkers leave the first-level cache.
+constexpr std::uint32_t kRaysAtOnce = 24;
 // So many rays for each of a work-group's, that the last ones of an item, which fewer and fewer keep company,
 // are few.
 constexpr std::uint32_t kRunsPerItem = 4;
@@ -95,8 +95,9 @@ TracePlan plan_trace(const cl::DeviceInfo& device, const TraceOptions& options, 
 TracePlan plan_wide_trace(const cl::DeviceInfo& device, const TraceOptions& options, std::uint32_t depth) {
   refuse_step_limit(options, "wide");
   TracePlan plan = common_plan(device, options);
-  // A node leaves at most seven of its children waiting; the last vector written there is eight long.
-  plan.stack_size = (7 * depth + 8 + 63) / 64 * 64;
+  // A node leaves at most seven of its children waiting, below them lies what says that there is nothing
+  // more, and the last vector written there is eight long.
+  plan.stack_size = (7 * depth + 9 + 63) / 64 * 64;
   plan.most_passes = 1;
   plan.rays_per_item = kRunsPerItem * plan.work_group_size;
   if (device.is_cpu && device.loop_limit == 0) plan.rays_at_once = std::min(kRaysAtOnce, plan.rays_per_item);

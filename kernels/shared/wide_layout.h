@@ -13,9 +13,8 @@
 typedef struct GnWideNode {
   gn_f32 planes[6][8];
   gn_u32 links[8];
-  gn_u32 pad[8];
 } GnWideNode;
-GN_SIZE_IS(GnWideNode, 256);
+GN_SIZE_IS(GnWideNode, 224);
 
 // A link to a node is its index. A link to a leaf has the top bit set, eight bits of triangle count - 1, and the
 // index of its first block; the leaf's triangles fill one block after the other.

@@ -314,6 +314,6 @@ TEST_CASE("a byte of a node or a block changes the hash") {
   wide.blocks.back().primitives[7] ^= 1U;
   REQUIRE(gnomon::tree_hash(wide) != before);
   wide.blocks.back().primitives[7] ^= 1U;
-  wide.nodes.back().pad[7] ^= 1U;
+  wide.nodes.back().links[7] ^= 1U;
   REQUIRE(gnomon::tree_hash(wide) != before);
 }

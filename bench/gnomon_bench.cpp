@@ -231,8 +231,9 @@ class SceneBench {
     options.portable = flavour.starts_with("portable");
     options.sort_rays = flavour.ends_with("sorted");
     if (flavour == "light-sorted") options.lights = lights_;
-    options.flavour = flavour.ends_with("packet") || options.sort_rays ? gnomon::TraceFlavour::kPacket
-                                                                       : gnomon::TraceFlavour::kWide;
+    options.flavour = flavour == "auto" || options.sort_rays ? gnomon::TraceFlavour::kAuto
+                      : flavour.ends_with("packet")          ? gnomon::TraceFlavour::kPacket
+                                                             : gnomon::TraceFlavour::kWide;
     if (flavour == "compact") options.flavour = gnomon::TraceFlavour::kCompact;
     if (flavour != "thread") return std::make_unique<gnomon::Tracer>(context_, wide_, options);
     options.flavour = gnomon::TraceFlavour::kThread;

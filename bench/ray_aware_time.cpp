@@ -215,7 +215,7 @@ class Bench {
                         {"wide_blocks_per_ray", steps.blocks},
                         {"wide_exact_per_ray", steps.exact},
                         {"wide_nodes", entrants[i].wide().node_count},
-                        {"wide_blocks", entrants[i].wide().block_count},
+                        {"wide_blocks", stats_of(wide_tree).blocks},
                         {"ns_per_ray", bench::spread_json(ns)},
                         // Of the baseline and of the balanced builder's tree, round by round.
                         {"time_of_sah", bench::spread_json(bench::speed_ratios(seconds[1], seconds[i]))},

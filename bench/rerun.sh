@@ -65,20 +65,20 @@ take_scaling() {
 }
 take_speed() {
   local single=bounce,bounce-shuffled,random,shadow coherent=primary,shadow,sun-axis,sun-oblique
-  local flavours=wide,portable,packet,sorted builders=balanced,fast,best
+  local flavours=wide,portable,auto,sorted builders=balanced,fast,best
   beside_embree --scenes atrium,terrain,random --ray-count 131072 --rounds 5 --rays $single \
     --flavours $flavours --builders $builders
   beside_embree --scenes city --ray-count 32768 --rounds 5 --rays $single --flavours $flavours \
     --builders $builders
   beside_embree --scenes atrium,terrain,random --ray-count 1048576 --rounds 5 --rays $coherent \
-    --flavours packet,wide --no-build
-  beside_embree --scenes city --ray-count 262144 --rounds 5 --rays $coherent --flavours packet,wide --no-build
+    --flavours auto,wide --no-build
+  beside_embree --scenes city --ray-count 262144 --rounds 5 --rays $coherent --flavours auto,wide --no-build
   beside_embree --scenes atrium,terrain,city --ray-count 262144 --rounds 5 --no-build \
-    --rays point-shuffled,sun-axis-shuffled,sun-oblique-shuffled,shadow-shuffled --flavours packet,sorted,light-sorted
+    --rays point-shuffled,sun-axis-shuffled,sun-oblique-shuffled,shadow-shuffled --flavours auto,sorted,light-sorted
   beside_embree --scenes atrium,terrain,random,city --ray-count 131072 --rounds 5 --all-threads --rays bounce,shadow \
     --flavours wide --builders balanced,fast,best
   beside_embree --scenes atrium,terrain,random,city --triangles 100000 --rounds 9 --ray-count 131072 \
-    --rays primary,bounce --flavours packet,wide --builders balanced,fast
+    --rays primary,bounce --flavours auto,wide --builders balanced,fast
 }
 take_spine() { "$build/bench/spine_bench"; }
 take_stability() {

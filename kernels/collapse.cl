@@ -1,5 +1,5 @@
 // From the binary tree to the wide one (shared/wide_layout.h): cuts the tree into subtrees, works out from the leaves up
-// what collapsing them costs, then writes wide nodes and triangle blocks from the root down. A wide node's children
+// what collapsing them costs, then writes wide nodes and leaves from the root down. A wide node's children
 // that are nodes lie side by side, what is below them follows child by child: numbers depend on the tree alone, not
 // on the cuts. One work-item a subtree throughout. weights: one a node of the binary tree, where they are given.
 // slot_keys: one a node; the caller's, or worked out as costs are (write_keys != 0).
@@ -158,23 +158,24 @@ __kernel void weigh_top(__global const GnNode* nodes, __global GnForest* forests
 
 // One work-item, twice. Goes through the wide nodes above subtrees of at most `limit` triangles. First (write == 0) it
 // lists those subtrees; then, knowing what each holds, it writes the nodes above and tells each where to write.
-// numbers: subtrees, wide nodes and blocks above them (when writing: all), largest leaf above, depth of the nodes above.
+// numbers: subtrees, wide nodes and leaves' places above them (when writing: all), largest leaf above, depth of the nodes
+// above.
 __kernel void emit_top(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks, uint limit, __global uint* numbers, int write) {
   const GnTree tree = GN_TREE;
   GnEmission work;
-  uint task_count = 0u;
+  uint task_count = 0u, word;
   start_emission(&work, 0u, 0u, 0u, 1u, 0u);
   while (work.height > 0u) {
     const uint top = work.height - 1u;
     if (triangles_below(&tree, work.roots[top]) <= limit) {
       __global GnCollapseTask* task = tasks + task_count;
       if (write) {
-        const uint nodes_below = task->nodes_below, blocks_below = task->blocks_below;
+        const uint nodes_below = task->nodes_below, places_below = task->places_below;
         task->node = work.places[top];
         task->nodes_below = work.next_node;
-        task->blocks_below = work.next_block;
+        task->places_below = work.next_place;
         work.next_node += nodes_below;
-        work.next_block += blocks_below;
+        work.next_place += places_below;
       } else {
         task->root = work.roots[top];
         task->depth = work.depths[top];
@@ -187,15 +188,18 @@ __kernel void emit_top(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks, uint 
       enter_node(&tree, &work, &slots, write);
     }
   }
+  if (write) {
+    for (word = 0u; word < GN_LEAF_SLACK; ++word) leaves[GN_TRIANGLE_WORDS * work.next_place + word] = 0u;
+  }
   numbers[0] = task_count;
   numbers[1] = work.next_node;
-  numbers[2] = work.next_block;
+  numbers[2] = work.next_place;
   numbers[3] = work.largest_leaf;
   numbers[4] = work.deepest;
 }
 
-// One work-item a subtree: how many wide nodes and blocks are below its root, and what each wide node's children are, from
-// the place of its first split in `opened` on: it has no more wide nodes than splits.
+// One work-item a subtree: how many wide nodes and leaves' places are below its root, and what each wide node's children
+// are, from the place of its first split in `opened` on: it has no more wide nodes than splits.
 __kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks, uint task_count,
                              __global GnOpened* opened) {
   const uint index = (uint)get_global_id(0);
@@ -214,7 +218,7 @@ __kernel void count_subtrees(GN_TREE_PARAMETERS, __global GnCollapseTask* tasks,
     enter_node(&tree, &work, &slots, 0);
   }
   tasks[index].nodes_below = work.next_node;
-  tasks[index].blocks_below = work.next_block;
+  tasks[index].places_below = work.next_place;
   tasks[index].largest_leaf = work.largest_leaf;
 }
 
@@ -230,7 +234,7 @@ __kernel void emit_subtrees(GN_TREE_PARAMETERS, __global const GnCollapseTask* t
   expect_range(nodes + 1u + 2u * ranks.x, (ranks.y - ranks.x) * 2u * sizeof(GnNode));
   expect_triangles(&tree, tasks[index].root);
   start_emission(&work, tasks[index].root, tasks[index].node, tasks[index].depth, tasks[index].nodes_below,
-                 tasks[index].blocks_below);
+                 tasks[index].places_below);
   for (opened += ranks.x; work.height > 0u; ++opened) {
     GnSlots slots;
     load_opened(opened, &slots);

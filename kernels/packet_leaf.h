@@ -6,25 +6,25 @@
 #include "packet_rays.h"
 
 // A triangle that floats cannot rank for this ray, or not even call met.
-static GN_OUT_OF_LINE void decide(GnPacket* p, __global const float8* rays, __global const GnTriangleBlock* blocks,
-                                  uint index, uint place, int verdict) {
+static GN_OUT_OF_LINE void decide(GnPacket* p, __global const float8* rays, __global const uint* leaves,
+                                  uint index, uint seat, int verdict) {
   const uint g = index >> 4, bit = 1u << (index & 15u);
   if (p->found[g] & bit) {  // trees of parts have a triangle in several leaves, and it is not nearer there
-    const uint other = ((const uint*)p->place)[index];
+    const uint other = ((const uint*)p->seat)[index];
     const uint nearest =
-        p->pending[g] & bit ? blocks[other >> 3].primitives[other & 7u] : p->best[index].primitive;
-    if (nearest == blocks[place >> 3].primitives[place & 7u]) return;
+        p->pending[g] & bit ? gn_number_at(leaves, other) : p->best[index].primitive;
+    if (nearest == gn_number_at(leaves, seat)) return;
   }
   const GnRay ray = load_ray(rays, p->first + index);
   const GnRayFrame frame = gn_ray_frame(&ray);
   float* nearest = (float*)p->nearest + index;
   float* farthest = (float*)p->farthest + index;
   GnHit hit;
-  if (!resolve(&frame, blocks + (place >> 3), place & 7u, verdict, &hit)) return;
+  if (!resolve(&frame, leaves, seat, verdict, &hit)) return;
   if (!(hit.t >= ray.tmin && hit.t <= ray.tmax)) return;
   if (p->pending[g] & bit) {
-    const uint other = ((const uint*)p->place)[index];
-    resolve(&frame, blocks + (other >> 3), other & 7u, 1, p->best + index);
+    const uint other = ((const uint*)p->seat)[index];
+    resolve(&frame, leaves, other, 1, p->best + index);
     p->pending[g] &= ~bit;
     *nearest = p->best[index].t;
     *farthest = *nearest;
@@ -73,24 +73,26 @@ typedef struct GnPacketEdges {
 #define GN_PACKET_ERROR 3.8146973e-06f  // 64 * 2^-24
 #define GN_PLANE_ERROR 1.9073486e-06f   // 32 * 2^-24
 
-// Prepares a block's first `count` triangles; returns those that a ray of the packet may meet.
-static inline uint packet_edges(const GnPacket* p, __global const GnTriangleBlock* block, uint count,
-                                GnPacketEdges* out) {
-  __global const float8* c = (__global const float8*)block->corners;
+// Prepares a block of `count` triangles whose words begin at c; returns those that a ray of the packet may meet.
+static inline uint packet_edges(const GnPacket* p, __global const float* c, uint count, GnPacketEdges* out) {
   const uint kx = p->kx, ky = p->ky, kz = p->kz;
   const float8 one = (float8)1.0f, zero = (float8)0.0f;
-  const float8 rx = c[kx] - p->apex[kx], ry = c[ky] - p->apex[ky];
-  const float8 az = c[kz] - p->apex[kz], bz = c[3u + kz] - p->apex[kz], cz = c[6u + kz] - p->apex[kz];
+  // Corners as they stand, then seen from the apex.
+  const float8 cax = GN_OF_BLOCK(c, kx, count), cbx = GN_OF_BLOCK(c, 3u + kx, count), ccx = GN_OF_BLOCK(c, 6u + kx, count);
+  const float8 cay = GN_OF_BLOCK(c, ky, count), cby = GN_OF_BLOCK(c, 3u + ky, count), ccy = GN_OF_BLOCK(c, 6u + ky, count);
+  const float8 caz = GN_OF_BLOCK(c, kz, count), cbz = GN_OF_BLOCK(c, 3u + kz, count), ccz = GN_OF_BLOCK(c, 6u + kz, count);
+  const float8 rx = cax - p->apex[kx], ry = cay - p->apex[ky];
+  const float8 az = caz - p->apex[kz], bz = cbz - p->apex[kz], cz = ccz - p->apex[kz];
   const float8 ax = rx - p->shear_x * az;
   const float8 ay = ry - p->shear_y * az;
-  const float8 bx = (c[3u + kx] - p->apex[kx]) - p->shear_x * bz;
-  const float8 by = (c[3u + ky] - p->apex[ky]) - p->shear_y * bz;
-  const float8 cx = (c[6u + kx] - p->apex[kx]) - p->shear_x * cz;
-  const float8 cy = (c[6u + ky] - p->apex[ky]) - p->shear_y * cz;
+  const float8 bx = (cbx - p->apex[kx]) - p->shear_x * bz;
+  const float8 by = (cby - p->apex[ky]) - p->shear_y * bz;
+  const float8 cx = (ccx - p->apex[kx]) - p->shear_x * cz;
+  const float8 cy = (ccy - p->apex[ky]) - p->shear_y * cz;
   // Edges: to c from b, to a from c, to b from a.
-  const float8 ux = c[6u + kx] - c[3u + kx], uy = c[6u + ky] - c[3u + ky], uz = c[6u + kz] - c[3u + kz];
-  const float8 vx = c[kx] - c[6u + kx], vy = c[ky] - c[6u + ky], vz = c[kz] - c[6u + kz];
-  const float8 wx = c[3u + kx] - c[kx], wy = c[3u + ky] - c[ky], wz = c[3u + kz] - c[kz];
+  const float8 ux = ccx - cbx, uy = ccy - cby, uz = ccz - cbz;
+  const float8 vx = cax - ccx, vy = cay - ccy, vz = caz - ccz;
+  const float8 wx = cbx - cax, wy = cby - cay, wz = cbz - caz;
   const float8 lx = GN_LARGEST_OF_3(ux, vx, wx), ly = GN_LARGEST_OF_3(uy, vy, wy), lz = GN_LARGEST_OF_3(uz, vz, wz);
   const float8 length = GN_MAX8(GN_MAX8(lx, ly), lz) + GN_PACKET_UNDERFLOW;
   const float8 far = GN_MAX8(GN_LARGEST_OF_3(ax, bx, cx), GN_LARGEST_OF_3(ay, by, cy)) +
@@ -134,8 +136,8 @@ static inline uint packet_edges(const GnPacket* p, __global const GnTriangleBloc
 }
 
 // The rays of `mask` in group g against triangle i of the block.
-static inline void test_triangle(GnPacket* p, __global const float8* rays, __global const GnTriangleBlock* blocks,
-                                 const GnPacketEdges* e, uint i, uint place, uint g, uint mask, int any_hit) {
+static inline void test_triangle(GnPacket* p, __global const float8* rays, __global const uint* leaves,
+                                 const GnPacketEdges* e, uint i, uint seat, uint g, uint mask, int any_hit) {
   const float16 x = p->slide_x[g], y = p->slide_y[g];
   const float16 u = fma(y, (float16)e->u[2][i], fma(x, (float16)e->u[1][i], (float16)e->u[0][i]));
   const float16 v = fma(y, (float16)e->v[2][i], fma(x, (float16)e->v[1][i], (float16)e->v[0][i]));
@@ -174,7 +176,7 @@ static inline void test_triangle(GnPacket* p, __global const float8* rays, __glo
       const int16 lanes = lanes_of_bits16(take);
       p->nearest[g] = lanes ? nearest : p->nearest[g];
       p->farthest[g] = lanes ? farthest : p->farthest[g];
-      p->place[g] = lanes ? (uint16)place : p->place[g];
+      p->seat[g] = lanes ? (uint16)seat : p->seat[g];
 #if GN_FAST
       {
         const float16 whole = 1.0f / (u + v + w);
@@ -188,7 +190,7 @@ static inline void test_triangle(GnPacket* p, __global const float8* rays, __glo
     while (rest != 0u) {
       const uint lane = lowest_bit(rest);
       const uint sure = (inside >> lane) & (known >> lane) & 1u;
-      decide(p, rays, blocks, 16u * g + lane, place, sure ? 1 : -1);
+      decide(p, rays, leaves, 16u * g + lane, seat, sure ? 1 : -1);
       rest &= rest - 1u;
     }
     if (any_hit) p->active[g] &= ~p->found[g];
@@ -196,27 +198,29 @@ static inline void test_triangle(GnPacket* p, __global const float8* rays, __glo
 }
 
 // masks: the rays of each group that meet the leaf's box.
-static inline void test_packet_leaf(GnPacket* p, __global const float8* rays, __global const GnTriangleBlock* blocks,
+static inline void test_packet_leaf(GnPacket* p, __global const float8* rays, __global const uint* leaves,
                                     uint link, const uint* masks, int any_hit) {
-  uint left = gn_link_triangles(link), block = gn_link_block(link), g;
+  GnLeaf leaf = gn_leaf_at(leaves, link);
+  uint g;
   for (;;) {
-    const uint count = min(left, GN_WIDTH);
+    const uint count = min(leaf.count, GN_WIDTH);
     GnPacketEdges edges;
-    uint met = packet_edges(p, blocks + block, count, &edges);
+    uint met = packet_edges(p, (__global const float*)leaves + GN_TRIANGLE_WORDS * leaf.first, count, &edges);
 #if GN_COUNTERS
     for (g = 0u; g < p->groups; ++g) p->triangles[g] += masks[g] != 0u ? count : 0u;
 #endif
     while (met != 0u) {
-      const uint i = lowest_bit(met);
+      const uint i = lowest_bit(met), seat = gn_seat(leaf.first, count, i);
       for (g = 0u; g < p->groups; ++g) {
         const uint mask = masks[g] & p->active[g];
-        if (mask != 0u) test_triangle(p, rays, blocks, &edges, i, 8u * block + i, g, mask, any_hit);
+        GN_WORK(p, triangles, mask != 0u);
+        if (mask != 0u) test_triangle(p, rays, leaves, &edges, i, seat, g, mask, any_hit);
       }
       met &= met - 1u;
     }
-    if (left <= GN_WIDTH) break;
-    left -= GN_WIDTH;
-    block += 1u;
+    if (leaf.count <= GN_WIDTH) break;
+    leaf.count -= GN_WIDTH;
+    leaf.first += GN_WIDTH;
   }
   for (g = 0u; g < p->groups; ++g) {
     const float16 limit = p->farthest[g] * (1.0f + GN_SLAB_SLACK);

@@ -3,6 +3,7 @@
 #ifndef GNOMON_PACKET_RAYS_H
 #define GNOMON_PACKET_RAYS_H
 
+#include "packet_choice.h"
 #include "sixteen.h"
 #include "wide_leaf.h"
 
@@ -29,7 +30,7 @@ typedef struct GnPacket {
   float16 slide_x[GN_GROUPS];
   float16 slide_y[GN_GROUPS];
   float16 start[GN_GROUPS];  // from the apex to the origin along the main axis
-  uint16 place[GN_GROUPS];   // of the triangle that floats found: block * 8 + lane
+  uint16 seat[GN_GROUPS];    // of the triangle that floats found
 #if GN_FAST
   float16 hit_u[GN_GROUPS];  // where in it
   float16 hit_v[GN_GROUPS];
@@ -54,6 +55,7 @@ typedef struct GnPacket {
   uint parallel;
   uint groups;
   uint first;  // ray of the batch
+  GnPacketWork work;
 #if GN_COUNTERS
   uint boxes[GN_GROUPS + 1u];  // the last: tested for all rays at once
   uint triangles[GN_GROUPS];
@@ -326,7 +328,7 @@ static inline int start_packet(GnPacket* p, __global const float8* rays, uint fi
     p->limit[g] = GN_MIN8(limit, (float16)FLT_MAX);
     p->nearest[g] = (float16)INFINITY;
     p->farthest[g] = (float16)INFINITY;
-    p->place[g] = (uint16)(0u);  // lanes are chosen from it, which a simulator takes for reading what nobody wrote
+    p->seat[g] = (uint16)(0u);  // lanes are chosen from it, which a simulator takes for reading what nobody wrote
     p->active[g] = 65535u;
     p->found[g] = 0u;
     p->pending[g] = 0u;

@@ -68,13 +68,14 @@ static inline uint rays_in_box(const GnPacket* p, uint g, const GnSlotBox* box) 
   return lanes_not_above16(near, far) & p->active[g];
 }
 
-static inline void walk_packet(GnPacket* p, __global const GnWideNode* nodes, __global const GnTriangleBlock* blocks,
+static inline void walk_packet(GnPacket* p, __global const GnWideNode* nodes, __global const uint* leaves,
                                __global const float8* rays, int any_hit) {
   uint places[GN_WIDE_STACK], keys[GN_WIDE_STACK];
   uint height = 0u, current = 0u;
   for (;;) {
     float8 entries;
     uint met = boxes_near_packet(p, nodes + current, &entries);
+    GN_WORK(p, nodes, 1u);
 #if GN_COUNTERS
     p->boxes[GN_GROUPS] += filled_slots(nodes + current);
 #endif
@@ -103,9 +104,14 @@ static inline void walk_packet(GnPacket* p, __global const GnWideNode* nodes, __
 #if GN_COUNTERS
           p->boxes[g] += 1u;
 #endif
-          if (p->active[g] != 0u && rays_in_box(p, g, &box) != 0u) break;
+          if (p->active[g] != 0u) masks[g] = rays_in_box(p, g, &box);
+          if (p->active[g] == 0u || masks[g] == 0u) continue;
+          some = 1u;
+          if (!GN_MEASURED(p)) break;
+          GN_WORK(p, alone_nodes, popcount(masks[g]));
         }
-        if (g == p->groups) continue;
+        GN_WORK(p, boxes, g < p->groups ? g + 1u : g);
+        if (some == 0u) continue;
         current = link;
         break;
       }
@@ -115,9 +121,11 @@ static inline void walk_packet(GnPacket* p, __global const GnWideNode* nodes, __
 #endif
         masks[g] = rays_in_box(p, g, &box);
         some |= masks[g];
+        GN_WORK(p, alone_blocks, popcount(masks[g]));
       }
+      GN_WORK(p, boxes, p->groups);
       if (some == 0u) continue;
-      test_packet_leaf(p, rays, blocks, link, masks, any_hit);
+      test_packet_leaf(p, rays, leaves, link, masks, any_hit);
       if (any_hit) {
         uint left = 0u;
         for (g = 0u; g < p->groups; ++g) left |= p->active[g];

@@ -39,11 +39,11 @@ __kernel void probe_layout(__global uint* out) {
   out[24] = GN_OFFSET(GnArea, root);
   out[25] = GN_OFFSET(GnAreaWalk, exit);
   out[26] = sizeof(GnWideNode);
-  out[27] = sizeof(GnTriangleBlock);
+  out[27] = sizeof(GnLeaf);
   out[28] = sizeof(GnForest);
   out[29] = sizeof(GnCollapseTask);
   out[30] = GN_OFFSET(GnWideNode, links);
-  out[31] = GN_OFFSET(GnTriangleBlock, primitives);
+  out[31] = GN_OFFSET(GnLeaf, count);
   out[32] = GN_OFFSET(GnForest, triangles);
   out[33] = GN_OFFSET(GnCollapseTask, largest_leaf);
   out[34] = sizeof(GnCompactNode);

@@ -4,18 +4,10 @@
 // cut. Every work-item's loops are short.
 #include "shared/compact_math.h"
 
-// One work-item per block: how many triangles it holds.
-__kernel void count_block_triangles(__global const GnTriangleBlock* blocks, __global uint* counts, uint block_count) {
-  const uint block = (uint)get_global_id(0);
-  uint lane, count = 0u;
-  if (block >= block_count) return;
-  for (lane = 0u; lane < GN_WIDTH; ++lane) count += blocks[block].primitives[lane] != GN_NONE;
-  counts[block] = count;
-}
-
-// One work-item per wide node: where the compact nodes of its children go. largest_leaf: of all, in triangles.
-__kernel void place_nodes(__global const GnWideNode* wide_nodes, __global uint* places,
-                          volatile __global uint* largest_leaf, uint node_count) {
+// One work-item per wide node: where the compact nodes of its children go. largest_leaf: of all, in triangles. is_count:
+// receives 1 for the places that hold no triangle but how many a long leaf has; filled with 0 before.
+__kernel void place_nodes(__global const GnWideNode* wide_nodes, __global const uint* leaves, __global uint* places,
+                          volatile __global uint* largest_leaf, __global uint* is_count, uint node_count) {
   const uint index = (uint)get_global_id(0);
   __global const GnWideNode* node = wide_nodes + index;
   uint child_of[GN_WIDTH], slot, first = GN_NONE, nodes = 0u, most = 0u;
@@ -25,7 +17,9 @@ __kernel void place_nodes(__global const GnWideNode* wide_nodes, __global uint* 
   for (slot = 0u; slot < GN_WIDTH && node->links[slot] != GN_NONE; ++slot) {
     const uint link = node->links[slot];
     if (gn_is_leaf_link(link)) {
-      most = max(most, gn_link_triangles(link));
+      const GnLeaf leaf = gn_leaf_at(leaves, link);
+      most = max(most, leaf.count);
+      if (leaf.first != gn_link_place(link)) is_count[gn_link_place(link)] = 1u;
     } else {
       first = min(first, link);
     }
@@ -39,44 +33,48 @@ __kernel void place_nodes(__global const GnWideNode* wide_nodes, __global uint* 
   if (most > 0u) atomic_max(largest_leaf, most);
 }
 
-// One work-item per wide node: writes the compact one, and where the triangles of its leaves' blocks go. starts: how
-// many triangles the blocks before each hold.
-__kernel void write_nodes(__global const GnWideNode* wide_nodes, __global const uint* places,
-                          __global const uint* starts, __global GnCompactNode* nodes, __global uint* block_places,
+// One work-item per wide node: writes the compact one, and for each place of its leaves the seat of the triangle there and
+// where that goes. counts_before: how many places before each hold no triangle.
+__kernel void write_nodes(__global const GnWideNode* wide_nodes, __global const uint* leaves, __global const uint* places,
+                          __global const uint* counts_before, __global GnCompactNode* nodes, __global uint2* moves,
                           uint node_count) {
   const uint index = (uint)get_global_id(0);
   __global const GnWideNode* node = wide_nodes + index;
-  uint child_of[GN_WIDTH], slot, block, next;
+  uint child_of[GN_WIDTH], slot, place, next;
   GnCompactNode out;
   if (index >= node_count) return;
   gn_assign_slots(node, child_of);
-  gn_fill_compact_node(node, child_of, &out);
-  block = gn_first_block(node);
-  if (block != GN_NONE) out.first_triangle = starts[block];
+  gn_fill_compact_node(node, leaves, child_of, &out);
+  place = gn_first_place(node);
+  if (place != GN_NONE) out.first_triangle = place - counts_before[place];
   next = out.first_triangle;
   for (slot = 0u; slot < GN_WIDTH; ++slot) {
     const uint link = child_of[slot] == GN_NONE ? GN_NONE : node->links[child_of[slot]];
-    uint i, count;
+    uint i;
     if (link == GN_NONE || !gn_is_leaf_link(link)) continue;
-    count = gn_link_triangles(link);
-    for (i = 0u; i < gn_blocks_of(count); ++i) block_places[gn_link_block(link) + i] = next + GN_WIDTH * i;
-    next += count;
+    {
+      const GnLeaf leaf = gn_leaf_at(leaves, link);
+      for (i = 0u; i < leaf.count; ++i) moves[leaf.first + i] = (uint2)(gn_seat_in(leaf, i), next + i);
+      next += leaf.count;
+    }
   }
   nodes[places[index]] = out;
 }
 
-// One work-item per lane of a block: writes its triangle, GnPlainTriangle as bits.
-__kernel void write_triangles(__global const GnTriangleBlock* blocks, __global const uint* block_places,
-                              __global uint* plain, uint lane_count) {
-  const uint index = (uint)get_global_id(0);
-  const uint lane = index % GN_WIDTH;
-  __global const uint* corners = (__global const uint*)(blocks + index / GN_WIDTH);
+// One work-item per place: writes its triangle, GnPlainTriangle as bits.
+__kernel void write_triangles(__global const uint* leaves, __global const uint2* moves,
+                              __global const uint* counts_before, __global uint* plain, uint place_count) {
+  const uint place = (uint)get_global_id(0);
+  uint2 move;
+  __global const uint* corners;
   __global uint* out;
   uint k;
-  if (index >= lane_count || blocks[index / GN_WIDTH].primitives[lane] == GN_NONE) return;
-  out = plain + 10u * ((size_t)block_places[index / GN_WIDTH] + lane);
-  for (k = 0u; k < 9u; ++k) out[k] = corners[GN_WIDTH * k + lane];
-  out[9] = blocks[index / GN_WIDTH].primitives[lane];
+  if (place >= place_count || counts_before[place + 1u] != counts_before[place]) return;
+  move = moves[place];
+  corners = leaves + gn_seat_word(move.x);
+  out = plain + GN_TRIANGLE_WORDS * (size_t)move.y;
+  for (k = 0u; k < 9u; ++k) out[k] = corners[k * gn_seat_stride(move.x)];
+  out[9] = gn_number_at(leaves, move.x);
 }
 
 static inline uint3 corner_bits(__global const uint* plain, uint corner) {

@@ -73,15 +73,23 @@ __kernel void refit_top(__global GnNode* nodes, __global const GnLeafTriangle* t
   for (i = top_count; i > 0u; --i) refit_inner(nodes, top[i - 1u], triangles);
 }
 
-// One work-item per block: the corners of its triangles.
-__kernel void refit_blocks(__global const float* triangles, __global GnTriangleBlock* blocks, uint count) {
-  const uint block = (uint)get_global_id(0);
-  uint lane, k;
-  if (block >= count) return;
-  for (lane = 0u; lane < GN_WIDTH; ++lane) {
-    const uint primitive = blocks[block].primitives[lane];
-    if (primitive != GN_NONE) {
-      for (k = 0u; k < 9u; ++k) blocks[block].corners[k][lane] = triangles[9u * (size_t)primitive + k];
+// One work-item per wide node: the corners of its leaves' triangles.
+__kernel void refit_leaves(__global const float* triangles, __global const GnWideNode* nodes, __global uint* leaves,
+                           uint count) {
+  const uint node = (uint)get_global_id(0);
+  uint slot, i, k;
+  if (node >= count) return;
+  for (slot = 0u; slot < GN_WIDTH; ++slot) {
+    const uint link = nodes[node].links[slot];
+    if (link == GN_NONE || (link & GN_LEAF_LINK) == 0u) continue;
+    {
+      const GnLeaf leaf = gn_leaf_at(leaves, link);
+      for (i = 0u; i < leaf.count; ++i) {
+        const uint seat = gn_seat_in(leaf, i);
+        __global float* corners = (__global float*)leaves + gn_seat_word(seat);
+        const size_t from = 9u * (size_t)gn_number_at(leaves, seat);
+        for (k = 0u; k < 9u; ++k) corners[k * gn_seat_stride(seat)] = triangles[from + k];
+      }
     }
   }
 }
@@ -123,15 +131,16 @@ static inline GnSlotBox empty_slot_box(void) {
   return box;
 }
 
-static inline GnSlotBox box_of_blocks(__global const GnTriangleBlock* blocks, uint link) {
+static inline GnSlotBox box_of_leaf(__global const uint* leaves, uint link) {
+  const GnLeaf leaf = gn_leaf_at(leaves, link);
   GnSlotBox box = empty_slot_box();
-  const uint count = gn_link_triangles(link);
   uint i, k, corner;
-  for (i = 0u; i < count; ++i) {
-    __global const GnTriangleBlock* block = blocks + gn_link_block(link) + i / GN_WIDTH;
+  for (i = 0u; i < leaf.count; ++i) {
+    const uint seat = gn_seat_in(leaf, i);
+    __global const float* corners = (__global const float*)leaves + gn_seat_word(seat);
     for (corner = 0u; corner < 3u; ++corner) {
       for (k = 0u; k < 3u; ++k) {
-        const float x = gn_without_negative_zero(block->corners[3u * corner + k][i % GN_WIDTH]);
+        const float x = gn_without_negative_zero(corners[(3u * corner + k) * gn_seat_stride(seat)]);
         box.lo[k] = gn_min(x, box.lo[k]);
         box.hi[k] = gn_max(x, box.hi[k]);
       }
@@ -154,7 +163,7 @@ static inline GnSlotBox box_of_slots(__global const GnWideNode* node) {
 
 // One work-item per wide node; those of one level work, all below it are done. Slots stay where they are: their order
 // changes no answer, and whoever chose it knew more than the corners tell.
-__kernel void refit_level(__global GnWideNode* nodes, __global const GnTriangleBlock* blocks,
+__kernel void refit_level(__global GnWideNode* nodes, __global const uint* leaves,
                           __global const uint* levels, uint level, uint count) {
   const uint node = (uint)get_global_id(0);
   uint slot, k;
@@ -164,7 +173,7 @@ __kernel void refit_level(__global GnWideNode* nodes, __global const GnTriangleB
     GnSlotBox box;
     if (link == GN_NONE) continue;
     if (link & GN_LEAF_LINK) {
-      box = box_of_blocks(blocks, link);
+      box = box_of_leaf(leaves, link);
     } else {
       box = box_of_slots(nodes + link);
     }

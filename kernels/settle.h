@@ -6,10 +6,10 @@
 
 #include "wide_leaf.h"
 
-// Hits found but not worked out: which ray met which triangle (a block's place times eight, plus the lane).
+// Hits found but not worked out: which ray met which triangle (its seat, shared/wide_layout.h).
 typedef struct GnFound {
   uint ray[8];
-  uint place[8];
+  uint seat[8];
   uint count;
 } GnFound;
 
@@ -43,19 +43,19 @@ static inline double8 determinant_of_eight(const double8* d, const double8* a, c
 
 #endif
 
-static inline GnHit settle_one(const GnFound* found, uint i, __global const GnTriangleBlock* blocks,
+static inline GnHit settle_one(const GnFound* found, uint i, __global const uint* leaves,
                                __global const float8* rays) {
   const GnRay ray = load_ray(rays, found->ray[i]);
   const GnRayFrame frame = gn_ray_frame(&ray);
   GnHit hit;
-  resolve(&frame, blocks + (found->place[i] >> 3), found->place[i] & 7u, 1, &hit);
+  resolve(&frame, leaves, found->seat[i], 1, &hit);
   return hit;
 }
 
 #if GN_HAS_FP64 && !GN_FAST
 
 // Works out the hits in `found` and writes them.
-static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangleBlock* blocks,
+static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const uint* leaves,
                                         __global const float8* rays, __global float4* hits) {
   float corner[72], line[48];
   long doubtful[8];
@@ -63,10 +63,10 @@ static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangl
   uint i, k;
   for (i = 0u; i < 8u; ++i) {
     const uint from = i < found->count ? i : 0u;
-    __global const GnTriangleBlock* block = blocks + (found->place[from] >> 3);
+    __global const float* triangle = (__global const float*)leaves + gn_seat_word(found->seat[from]);
     __global const float* ray = (__global const float*)(rays + found->ray[from]);
-    const uint lane = found->place[from] & 7u;
-    for (k = 0u; k < 9u; ++k) corner[8u * k + i] = block->corners[k][lane];
+    const uint stride = gn_seat_stride(found->seat[from]);
+    for (k = 0u; k < 9u; ++k) corner[8u * k + i] = triangle[k * stride];
     for (k = 0u; k < 3u; ++k) {
       line[8u * k + i] = ray[k];
       line[24u + 8u * k + i] = ray[4u + k];
@@ -109,8 +109,8 @@ static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangl
     vstore8(convert_float8(w2 / sum), 2, corner);
   }
   for (i = 0u; i < found->count; ++i) {
-    const uint primitive = blocks[found->place[i] >> 3].primitives[found->place[i] & 7u];
-    const float t = doubtful[i] != 0 ? settle_one(found, i, blocks, rays).t : corner[i];
+    const uint primitive = gn_number_at(leaves, found->seat[i]);
+    const float t = doubtful[i] != 0 ? settle_one(found, i, leaves, rays).t : corner[i];
     hits[found->ray[i]] = (float4)(t, corner[8u + i], corner[16u + i], as_float(primitive));
   }
   found->count = 0u;
@@ -118,11 +118,11 @@ static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangl
 
 #else
 
-static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangleBlock* blocks,
+static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const uint* leaves,
                                         __global const float8* rays, __global float4* hits) {
   uint i;
   for (i = 0u; i < found->count; ++i) {
-    const GnHit hit = settle_one(found, i, blocks, rays);
+    const GnHit hit = settle_one(found, i, leaves, rays);
     hits[found->ray[i]] = (float4)(hit.t, hit.u, hit.v, as_float(hit.primitive));
   }
   found->count = 0u;
@@ -130,12 +130,12 @@ static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const GnTriangl
 
 #endif
 
-static inline void hand_in(GnFound* found, uint ray, uint place, __global const GnTriangleBlock* blocks,
+static inline void hand_in(GnFound* found, uint ray, uint seat, __global const uint* leaves,
                            __global const float8* rays, __global float4* hits) {
   found->ray[found->count] = ray;
-  found->place[found->count] = place;
+  found->seat[found->count] = seat;
   found->count += 1u;
-  if (found->count == 8u) settle_found(found, blocks, rays, hits);
+  if (found->count == 8u) settle_found(found, leaves, rays, hits);
 }
 
 #endif

@@ -1,4 +1,4 @@
-// Writing wide nodes and triangle blocks (shared/wide_layout.h) from the root of a subtree of the binary tree down: what
+// Writing wide nodes and leaves (shared/wide_layout.h) from the root of a subtree of the binary tree down: what
 // waits to be written, one node with its leaves, and where a subtree lies in memory. Not for what collapsing costs.
 // Options: GN_COLLAPSE_DEPTH. Feeds collapse.cl.
 #ifndef GNOMON_WIDE_EMIT_H
@@ -15,7 +15,7 @@ typedef struct GnTree {
   __global const GnForest* forests;
   __global const GnLeafTriangle* triangles;
   __global GnWideNode* wide_nodes;
-  __global GnTriangleBlock* blocks;
+  __global uint* leaves;
   GnCollapseCosts costs;
   GnNodeValues weights;
   __global const float* keys;
@@ -28,37 +28,36 @@ typedef struct GnEmission {
   uint depths[GN_EMIT_STACK];
   uint height;
   uint next_node;
-  uint next_block;
+  uint next_place;
   uint deepest;
   uint largest_leaf;  // triangles
 } GnEmission;
 
-// Four triangles' corners side by side, as bits: rows are one triangle's corner each.
-static inline void store_columns(__global uint* out, uint plane, uint4 r0, uint4 r1, uint4 r2, uint4 r3) {
-  vstore4((uint4)(r0.x, r1.x, r2.x, r3.x), 0, out + GN_WIDTH * plane);
-  vstore4((uint4)(r0.y, r1.y, r2.y, r3.y), 0, out + GN_WIDTH * (plane + 1u));
-  vstore4((uint4)(r0.z, r1.z, r2.z, r3.z), 0, out + GN_WIDTH * (plane + 2u));
-}
-
-// A corner with what stands behind it; zeros for a triangle past the end.
-static inline uint4 corner_or_none(__global const GnLeafTriangle* triangles, uint i, uint count, uint corner) {
-  const uint4 row = vload4(corner, (__global const uint*)(triangles + min(i, count - 1u)));
-  return i < count ? row : (uint4)(0u, 0u, 0u, GN_NONE);
-}
-
-static inline void write_leaf(const GnTree* tree, uint node, uint triangles, uint block) {
+static inline void write_leaf(const GnTree* tree, uint node, uint triangles, uint place) {
   __global const GnLeafTriangle* from = tree->triangles + gn_first_triangle(tree->nodes, node);
-  uint i, corner;
-  for (i = 0u; i < gn_blocks_of(triangles) * GN_WIDTH; i += 4u) {
-    __global GnTriangleBlock* out = tree->blocks + block + i / GN_WIDTH;
-    __global uint* lanes = (__global uint*)out + i % GN_WIDTH;
-    for (corner = 0u; corner < 3u; ++corner) {
-      const uint4 r0 = corner_or_none(from, i, triangles, corner), r1 = corner_or_none(from, i + 1u, triangles, corner);
-      const uint4 r2 = corner_or_none(from, i + 2u, triangles, corner),
-                  r3 = corner_or_none(from, i + 3u, triangles, corner);
-      store_columns(lanes, 3u * corner, r0, r1, r2, r3);
-      if (corner == 0u)  // behind the first stands the triangle's number
-        vstore4((uint4)(r0.w, r1.w, r2.w, r3.w), 0, out->primitives + i % GN_WIDTH);
+  __global uint* out = tree->leaves + GN_TRIANGLE_WORDS * place;
+  uint begin, i, k;
+  if (triangles >= GN_LONG_LEAF) {
+    out[0] = triangles;
+    for (k = 1u; k < GN_TRIANGLE_WORDS; ++k) out[k] = 0u;
+    out += GN_TRIANGLE_WORDS;
+  }
+  for (begin = 0u; begin < triangles; begin += GN_WIDTH) {
+    const uint count = min(triangles - begin, GN_WIDTH);
+    for (i = 0u; i < count; ++i) {
+      __global const uint* row = (__global const uint*)(from + begin + i);
+      const uint4 a = vload4(0, row), b = vload4(1, row), c = vload4(2, row);
+      __global uint* at = out + GN_TRIANGLE_WORDS * begin + i;
+      at[0] = a.x;
+      at[count] = a.y;
+      at[2u * count] = a.z;
+      at[3u * count] = b.x;
+      at[4u * count] = b.y;
+      at[5u * count] = b.z;
+      at[6u * count] = c.x;
+      at[7u * count] = c.y;
+      at[8u * count] = c.z;
+      at[9u * count] = a.w + GN_NUMBER;  // behind the first corner stands the triangle's number
     }
   }
 }
@@ -104,9 +103,9 @@ static inline void enter_node(const GnTree* tree, GnEmission* work, const GnSlot
       work->depths[place] = depth;
       entered += 1u;
     } else {
-      link = gn_leaf_link(work->next_block, triangles);
-      if (write) write_leaf(tree, slots->node[slot], triangles, work->next_block);
-      work->next_block += gn_blocks_of(triangles);
+      link = gn_leaf_link(work->next_place, triangles);
+      if (write) write_leaf(tree, slots->node[slot], triangles, work->next_place);
+      work->next_place += gn_leaf_places(triangles);
       work->largest_leaf = max(work->largest_leaf, triangles);
     }
     if (write) {
@@ -145,13 +144,13 @@ static inline void load_opened(__global const GnOpened* from, GnSlots* slots) {
 }
 
 static inline void start_emission(GnEmission* work, uint root, uint place, uint depth, uint next_node,
-                                  uint next_block) {
+                                  uint next_place) {
   work->roots[0] = root;
   work->places[0] = place;
   work->depths[0] = depth;
   work->height = 1u;
   work->next_node = next_node;
-  work->next_block = next_block;
+  work->next_place = next_place;
   work->deepest = 0u;
   work->largest_leaf = 0u;
 }
@@ -184,9 +183,9 @@ static inline void expect_triangles(const GnTree* tree, uint root) {
 
 #define GN_TREE_PARAMETERS                                                                                         \
   __global const GnNode *nodes, __global const GnForest *forests, __global const GnLeafTriangle *triangles,         \
-      __global GnWideNode *wide_nodes, __global GnTriangleBlock *blocks, float node_cost, float block_cost,                   \
+      __global GnWideNode *wide_nodes, __global uint *leaves, float node_cost, float block_cost,                            \
       __global const float *node_weights, uint weights_given, __global const float *slot_keys
 #define GN_TREE \
-  {nodes, forests, triangles, wide_nodes, blocks, {node_cost, block_cost}, {node_weights, weights_given}, slot_keys}
+  {nodes, forests, triangles, wide_nodes, leaves, {node_cost, block_cost}, {node_weights, weights_given}, slot_keys}
 
 #endif

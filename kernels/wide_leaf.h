@@ -48,8 +48,7 @@ typedef struct GnWideWalk {
   float limit;  // of box entries still of interest
   uint found;
   uint pending;
-  uint pending_lane;
-  __global const GnTriangleBlock* pending_block;
+  uint seat;  // of the pending triangle
   uint boxes;
   uint triangles;
 } GnWideWalk;
@@ -98,17 +97,19 @@ static inline void take_exact(GnWideWalk* walk, const GnHit* hit) {
   walk->limit = limit_for(hit->t);
 }
 
-// Decides a lane of a block exactly.
-static GN_OUT_OF_LINE int resolve(const GnRayFrame* frame, __global const GnTriangleBlock* block, uint lane,
-                                  int verdict, GnHit* hit) {
+// Decides a triangle exactly.
+static GN_OUT_OF_LINE int resolve(const GnRayFrame* frame, __global const uint* leaves, uint seat, int verdict,
+                                  GnHit* hit) {
+  __global const float* at = (__global const float*)leaves + gn_seat_word(seat);
+  const uint stride = gn_seat_stride(seat);
   float v0[3], v1[3], v2[3];
   uint k;
   for (k = 0u; k < 3u; ++k) {
-    v0[k] = block->corners[k][lane];
-    v1[k] = block->corners[3u + k][lane];
-    v2[k] = block->corners[6u + k][lane];
+    v0[k] = at[k * stride];
+    v1[k] = at[(3u + k) * stride];
+    v2[k] = at[(6u + k) * stride];
   }
-  hit->primitive = block->primitives[lane];
+  hit->primitive = gn_number_at(leaves, seat);
 #if GN_FAST
   return gn_triangle_by_floats(frame, v0, v1, v2, hit);
 #else
@@ -117,34 +118,33 @@ static GN_OUT_OF_LINE int resolve(const GnRayFrame* frame, __global const GnTria
 }
 
 // The exact values of a hit that floats found.
-static inline void settle(GnWideWalk* walk, const GnWideRay* ray) {
+static inline void settle(GnWideWalk* walk, const GnWideRay* ray, __global const uint* leaves) {
   GnHit hit;
   if (!walk->pending) return;
-  resolve(&ray->frame, walk->pending_block, walk->pending_lane, 1, &hit);
+  resolve(&ray->frame, leaves, walk->seat, 1, &hit);
   take_exact(walk, &hit);
 }
 
-// Whether a lane holds the triangle of the nearest hit so far: trees of parts have it in several leaves, and it is not
+// Whether a seat holds the triangle of the nearest hit so far: trees of parts have it in several leaves, and it is not
 // nearer there.
-static inline int is_nearest(const GnWideWalk* walk, __global const GnTriangleBlock* block, uint lane) {
-  const uint primitive =
-      walk->pending ? walk->pending_block->primitives[walk->pending_lane] : walk->best.primitive;
-  return walk->found && primitive == block->primitives[lane];
+static inline int is_nearest(const GnWideWalk* walk, __global const uint* leaves, uint seat) {
+  const uint primitive = walk->pending ? gn_number_at(leaves, walk->seat) : walk->best.primitive;
+  return walk->found && primitive == gn_number_at(leaves, seat);
 }
 
 // A triangle that floats cannot rank, or not even call met.
-static GN_OUT_OF_LINE void test_exactly(GnWideWalk* walk, const GnWideRay* ray, __global const GnTriangleBlock* block,
-                                        uint lane, int verdict) {
+static GN_OUT_OF_LINE void test_exactly(GnWideWalk* walk, const GnWideRay* ray, __global const uint* leaves,
+                                        uint seat, int verdict) {
   GnHit hit;
-  if (is_nearest(walk, block, lane)) return;
-  if (!resolve(&ray->frame, block, lane, verdict, &hit)) return;
+  if (is_nearest(walk, leaves, seat)) return;
+  if (!resolve(&ray->frame, leaves, seat, verdict, &hit)) return;
   if (!(hit.t >= ray->tmin && hit.t <= ray->tmax)) return;
-  settle(walk, ray);
+  settle(walk, ray, leaves);
   if (!walk->found || gn_hit_is_nearer(&hit, &walk->best)) take_exact(walk, &hit);
 }
 
 // A triangle that is met for certain, by floats between nearest and farthest.
-static inline void test_met(GnWideWalk* walk, const GnWideRay* ray, __global const GnTriangleBlock* block, uint lane,
+static inline void test_met(GnWideWalk* walk, const GnWideRay* ray, __global const uint* leaves, uint seat,
                             float nearest, float farthest) {
   // False where something overflowed: infinities less themselves and NaN compare with nothing.
   const int known = farthest - nearest < INFINITY;
@@ -153,31 +153,35 @@ static inline void test_met(GnWideWalk* walk, const GnWideRay* ray, __global con
   if (known && nearest >= ray->tmin && farthest <= ray->tmax && (!walk->found || farthest < walk->nearest)) {
     walk->found = 1u;
     walk->pending = 1u;
-    walk->pending_block = block;
-    walk->pending_lane = lane;
+    walk->seat = seat;
     walk->nearest = nearest;
     walk->farthest = farthest;
     walk->limit = limit_for(farthest);
   } else {
     // An edge function that overflowed to NaN hides from the largest and the smallest: nothing is certain then.
-    test_exactly(walk, ray, block, lane, known ? 1 : -1);
+    test_exactly(walk, ray, leaves, seat, known ? 1 : -1);
   }
 }
 
-// Tests the first `count` triangles of a block: gn_triangle_filter and gn_met_at, eight at a time.
-static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global const GnTriangleBlock* block, uint count,
+// Eight triangles' coordinate k, counted through all corners, of a block of `count` at c; lanes behind them are anything.
+#define GN_OF_BLOCK(c, k, count) vload8(0, (c) + (k) * (count))
+
+// Tests a block of `count` triangles from place `first` on: gn_triangle_filter and gn_met_at, eight at a time.
+static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global const uint* leaves, uint first, uint count,
                               int any_hit) {
   const GnRayFrame* frame = &ray->frame;
-  __global const float8* c = (__global const float8*)block->corners;
+  __global const float* c = (__global const float*)leaves + GN_TRIANGLE_WORDS * first;
   const uint kx = frame->kx, ky = frame->ky, kz = frame->kz;
   const float ox = frame->origin[kx], oy = frame->origin[ky], oz = frame->origin[kz];
-  const float8 az = c[kz] - oz, bz = c[3u + kz] - oz, cz = c[6u + kz] - oz;
-  const float8 ax = (c[kx] - ox) - frame->shear_x * az;
-  const float8 ay = (c[ky] - oy) - frame->shear_y * az;
-  const float8 bx = (c[3u + kx] - ox) - frame->shear_x * bz;
-  const float8 by = (c[3u + ky] - oy) - frame->shear_y * bz;
-  const float8 cx = (c[6u + kx] - ox) - frame->shear_x * cz;
-  const float8 cy = (c[6u + ky] - oy) - frame->shear_y * cz;
+  const float8 az = GN_OF_BLOCK(c, kz, count) - oz;
+  const float8 bz = GN_OF_BLOCK(c, 3u + kz, count) - oz;
+  const float8 cz = GN_OF_BLOCK(c, 6u + kz, count) - oz;
+  const float8 ax = (GN_OF_BLOCK(c, kx, count) - ox) - frame->shear_x * az;
+  const float8 ay = (GN_OF_BLOCK(c, ky, count) - oy) - frame->shear_y * az;
+  const float8 bx = (GN_OF_BLOCK(c, 3u + kx, count) - ox) - frame->shear_x * bz;
+  const float8 by = (GN_OF_BLOCK(c, 3u + ky, count) - oy) - frame->shear_y * bz;
+  const float8 cx = (GN_OF_BLOCK(c, 6u + kx, count) - ox) - frame->shear_x * cz;
+  const float8 cy = (GN_OF_BLOCK(c, 6u + ky, count) - oy) - frame->shear_y * cz;
   const float8 u = cx * by - cy * bx;
   const float8 v = ax * cy - ay * cx;
   const float8 w = bx * ay - by * ax;
@@ -203,11 +207,11 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
     vstore8(t - error, 0, nearest);
     vstore8(t + error, 0, farthest);
     do {
-      const uint lane = lowest_bit(met);
+      const uint lane = lowest_bit(met), seat = gn_seat(first, count, lane);
       if ((inside >> lane) & 1u) {
-        test_met(walk, ray, block, lane, nearest[lane], farthest[lane]);
+        test_met(walk, ray, leaves, seat, nearest[lane], farthest[lane]);
       } else {
-        test_exactly(walk, ray, block, lane, -1);
+        test_exactly(walk, ray, leaves, seat, -1);
       }
       met &= met - 1u;
     } while (met != 0u && !(any_hit && walk->found));
@@ -215,19 +219,18 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
 }
 
 // True when an any-hit walk is over.
-static inline int test_wide_leaf(GnWideWalk* walk, const GnWideRay* ray, __global const GnTriangleBlock* blocks,
-                                 uint link, int any_hit) {
-  uint left = gn_link_triangles(link);
-  __global const GnTriangleBlock* block = blocks + gn_link_block(link);
+static inline int test_wide_leaf(GnWideWalk* walk, const GnWideRay* ray, __global const uint* leaves, uint link,
+                                 int any_hit) {
+  GnLeaf leaf = gn_leaf_at(leaves, link);
 #if GN_COUNTERS
-  walk->triangles += left;
+  walk->triangles += leaf.count;
 #endif
   for (;;) {
-    test_block(walk, ray, block, min(left, GN_WIDTH), any_hit);
+    test_block(walk, ray, leaves, leaf.first, min(leaf.count, GN_WIDTH), any_hit);
     if (any_hit && walk->found) return 1;
-    if (left <= GN_WIDTH) return 0;
-    left -= GN_WIDTH;
-    block += 1;
+    if (leaf.count <= GN_WIDTH) return 0;
+    leaf.count -= GN_WIDTH;
+    leaf.first += GN_WIDTH;
   }
 }
 

@@ -67,8 +67,7 @@ static inline GnWideWalk start_walk(const GnRay* ray) {
   walk.limit = limit_for(ray->tmax);
   walk.found = 0u;
   walk.pending = 0u;
-  walk.pending_lane = 0u;
-  walk.pending_block = 0;
+  walk.seat = 0u;
   walk.boxes = 0u;
   walk.triangles = 0u;
   return walk;
@@ -89,7 +88,7 @@ typedef struct GnWalker {
 // What a batch is traced against, and where answers go: hits, or occluded for any hit.
 typedef struct GnWideBatch {
   __global const GnWideNode* nodes;
-  __global const GnTriangleBlock* blocks;
+  __global const uint* leaves;
   __global const float8* rays;
   __global float4* hits;
   __global uint* occluded;
@@ -100,9 +99,6 @@ typedef struct GnWideBatch {
   __global const GnBoxFrame* boxes;
 #endif
 } GnWideBatch;
-
-// Of a node all, of a leaf what most have.
-#define GN_SENT_FOR (4u * GN_CACHE_LINE)
 
 // What kernels take beyond the others' parameters for boxes in a frame, and put at a batch's end.
 #if GN_FRAME
@@ -115,11 +111,16 @@ typedef struct GnWideBatch {
 #define GN_TAKE_RAY(out, ray, batch) set_wide_ray(out, ray)
 #endif
 
+// Four cache lines: of a node all, of a leaf what most have.
 static inline void send_for(const GnWideBatch* batch, uint link) {
   const int is_leaf = (link & GN_LEAF_LINK) != 0u;
-  __global const char* at = is_leaf ? (__global const char*)(batch->blocks + gn_link_block(link))
+  __global const char* at = is_leaf ? (__global const char*)(batch->leaves + GN_TRIANGLE_WORDS * gn_link_place(link))
                                     : (__global const char*)(batch->nodes + link);
-  expect_range(at, GN_SENT_FOR);
+  if (link == GN_NONE) at = (__global const char*)batch->nodes;
+  GN_EXPECT(at);
+  GN_EXPECT(at + GN_CACHE_LINE);
+  GN_EXPECT(at + 2u * GN_CACHE_LINE);
+  GN_EXPECT(at + 3u * GN_CACHE_LINE);
 }
 
 static inline void take_next(GnWalker* walker, const GnWideBatch* batch, uint height) {
@@ -150,7 +151,7 @@ static inline void step_node(GnWalker* walker, const GnWideBatch* batch, int any
 // A nearer hit leaves nothing waiting that is entered beyond it: then whatever comes off the stack is worth a look.
 static inline void step_leaf(GnWalker* walker, const GnWideBatch* batch, int any_hit) {
   const float limit = walker->walk.limit;
-  if (test_wide_leaf(&walker->walk, &walker->ray, batch->blocks, walker->current, any_hit)) {
+  if (test_wide_leaf(&walker->walk, &walker->ray, batch->leaves, walker->current, any_hit)) {
     walker->current = GN_NONE;
     return;
   }
@@ -166,10 +167,9 @@ static inline void hand_over(GnWalker* walker, const GnWideBatch* batch, int any
   if (any_hit) {
     batch->occluded[index] = walker->walk.found;
   } else if (GN_HAND_IN && walker->walk.pending) {
-    const uint block = (uint)(walker->walk.pending_block - batch->blocks);
-    hand_in(batch->found, index, GN_WIDTH * block + walker->walk.pending_lane, batch->blocks, batch->rays, batch->hits);
+    hand_in(batch->found, index, walker->walk.seat, batch->leaves, batch->rays, batch->hits);
   } else {
-    settle(&walker->walk, &walker->ray);
+    settle(&walker->walk, &walker->ray, batch->leaves);
     batch->hits[index] = (float4)(best->t, best->u, best->v, as_float(best->primitive));
   }
 #if GN_COUNTERS
@@ -197,25 +197,18 @@ static inline uint take_up(GnWalker* walker, const GnWideBatch* batch, uint inde
 }
 
 #if GN_RAYS_AT_ONCE > 1
-// Which of the walkers look at a node next, which at a leaf, and which are done. A ray goes from one list to another without
-// a branch: where it goes next cannot be foreseen.
-typedef struct GnTurns {
-  uint at_nodes[GN_RAYS_AT_ONCE];
-  uint at_leaves[GN_RAYS_AT_ONCE];
-  uint done[GN_RAYS_AT_ONCE];
-  uint nodes;
-  uint leaves;
-  uint ended;
-} GnTurns;
-
-static inline void sort_in(GnTurns* turns, uint walker, uint link) {
+// Puts a walker at the end of one of three lists: those that look at a node next, those that look at a leaf, and those that
+// are done. Without a branch: where a ray goes next cannot be foreseen. Counts are the caller's own variables, so that they
+// stay in registers.
+static inline void sort_in(uint walker, uint link, uint* at_nodes, uint* nodes, uint* at_leaves, uint* leaves, uint* done,
+                           uint* ended) {
   const uint is_node = (link & GN_LEAF_LINK) == 0u, is_done = link == GN_NONE;
-  turns->at_nodes[turns->nodes] = walker;
-  turns->nodes += is_node;
-  turns->at_leaves[turns->leaves] = walker;
-  turns->leaves += 1u - is_node - is_done;
-  turns->done[turns->ended] = walker;
-  turns->ended += is_done;
+  at_nodes[*nodes] = walker;
+  *nodes += is_node;
+  at_leaves[*leaves] = walker;
+  *leaves += 1u - is_node - is_done;
+  done[*ended] = walker;
+  *ended += is_done;
 }
 #endif
 
@@ -223,38 +216,36 @@ static inline void sort_in(GnTurns* turns, uint walker, uint link) {
 static inline void trace_singly(const GnWideBatch* batch, uint index, uint end, int any_hit) {
 #if GN_RAYS_AT_ONCE > 1
   GnWalker walkers[GN_RAYS_AT_ONCE];
-  GnTurns turns;
-  turns.nodes = 0u;
-  turns.leaves = 0u;
-  turns.ended = 0u;
-  for (; index < end && turns.nodes < GN_RAYS_AT_ONCE; ++index) {
-    turns.at_nodes[turns.nodes] = turns.nodes;
-    turns.nodes += take_up(walkers + turns.nodes, batch, index, any_hit);
+  uint at_nodes[GN_RAYS_AT_ONCE], at_leaves[GN_RAYS_AT_ONCE], done[GN_RAYS_AT_ONCE];
+  uint nodes = 0u, leaves = 0u, ended = 0u;
+  for (; index < end && nodes < GN_RAYS_AT_ONCE; ++index) {
+    at_nodes[nodes] = nodes;
+    nodes += take_up(walkers + nodes, batch, index, any_hit);
   }
-  while (turns.nodes + turns.leaves > 0u) {
-    uint i, count = turns.nodes;
-    turns.nodes = 0u;
+  while (nodes + leaves > 0u) {
+    uint i, count = nodes;
+    nodes = 0u;
     for (i = 0u; i < count; ++i) {
-      const uint at = turns.at_nodes[i];
+      const uint at = at_nodes[i];
       step_node(walkers + at, batch, any_hit);
-      sort_in(&turns, at, walkers[at].current);
+      sort_in(at, walkers[at].current, at_nodes, &nodes, at_leaves, &leaves, done, &ended);
     }
-    count = turns.leaves;
-    turns.leaves = 0u;
+    count = leaves;
+    leaves = 0u;
     for (i = 0u; i < count; ++i) {
-      const uint at = turns.at_leaves[i];
+      const uint at = at_leaves[i];
       step_leaf(walkers + at, batch, any_hit);
-      sort_in(&turns, at, walkers[at].current);
+      sort_in(at, walkers[at].current, at_nodes, &nodes, at_leaves, &leaves, done, &ended);
     }
-    for (i = 0u; i < turns.ended; ++i) {
-      const uint at = turns.done[i];
+    for (i = 0u; i < ended; ++i) {
+      const uint at = done[i];
       uint goes_on = 0u;
       hand_over(walkers + at, batch, any_hit);
       for (; !goes_on && index < end; ++index) goes_on = take_up(walkers + at, batch, index, any_hit);
-      turns.at_nodes[turns.nodes] = at;
-      turns.nodes += goes_on;
+      at_nodes[nodes] = at;
+      nodes += goes_on;
     }
-    turns.ended = 0u;
+    ended = 0u;
   }
 #else
   GnWalker walker;

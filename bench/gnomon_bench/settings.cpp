@@ -17,12 +17,12 @@ void add_options(CLI::App& program, Settings& s) {
       ->capture_default_str();
   program
       .add_option("--flavours", s.flavours,
-                  "of our tracer, by commas; sorted: packet, rays sorted first; light-sorted: by the lights "
+                  "of our tracer, by commas; sorted: auto, rays sorted first; light-sorted: by the lights "
                   "that they "
                   "go to")
       ->delimiter(',')
-      ->check(CLI::IsMember(
-          {"packet", "wide", "portable", "portable-packet", "thread", "sorted", "light-sorted", "compact"}))
+      ->check(CLI::IsMember({"auto", "packet", "wide", "portable", "portable-packet", "thread", "sorted",
+                             "light-sorted", "compact"}))
       ->capture_default_str();
   program
       .add_option("--builders", s.builders,

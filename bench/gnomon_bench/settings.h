@@ -24,7 +24,7 @@ struct Settings {
   std::uint64_t triangles = 1'000'000;
   std::vector<std::string> rays{"primary",  "bounce",      "bounce-shuffled", "shadow",
                                 "sun-axis", "sun-oblique", "random"};
-  std::vector<std::string> flavours{"packet", "wide"};
+  std::vector<std::string> flavours{"auto", "wide"};
   std::vector<std::string> builders{"balanced"};
   std::uint64_t ray_count = 262'144;
   std::uint64_t seed = 1;

@@ -277,10 +277,8 @@ void add_trace_command(CLI::App& program, OutputOptions& output, Action& action)
       ->add_option(
           "--flavour", options->flavour,
           "thread: the binary tree; wide: eight boxes at a time; packet: wide, and rays that run together "
-          "as one; compact: a tree of two fifths of the memory, for GPUs; auto: as suits the device. Hits "
-          "are "
-          "the "
-          "same, boxes a ray are not")
+          "as one; compact: less memory, for GPUs; auto: as suits the device, on CPUs packets where they "
+          "pay. Hits are the same, boxes a ray are not")
       ->check(CLI::IsMember({"auto", "thread", "wide", "packet", "compact"}))
       ->type_name("F")
       ->capture_default_str();

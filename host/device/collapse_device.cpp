@@ -31,6 +31,11 @@ void heed_loop_limit(const cl::DeviceInfo& device, std::uint32_t triangles) {
                   " triangles; trace the binary tree there or use another device");
 }
 
+cl::Buffer leaf_buffer(const cl::Context& context, std::uint32_t places) {
+  return context.create_buffer(
+      "wide_leaves", (std::size_t{places} * GN_TRIANGLE_WORDS + GN_LEAF_SLACK) * sizeof(std::uint32_t));
+}
+
 class Collapser {
  public:
   Collapser(const cl::Context& context, const DeviceBvh& tree, const CollapseOptions& options,
@@ -109,43 +114,43 @@ class Collapser {
            no_nodes_, no_nodes_, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_,
            tasks, task_count, opened);
     DeviceWideBvh wide = allocate(tasks, task_count);
-    top(wide.nodes, wide.blocks, tasks, 1);
+    top(wide.nodes, wide.leaves, tasks, 1);
     const cl::Buffer depth = context_.create_buffer("collapse_depth", sizeof(std::uint32_t));
     context_.fill(depth, 0);
     launch("collapse: emit", "emit_subtrees", task_count, tree_.nodes, forests_, tree_.leaf_triangles,
-           wide.nodes, wide.blocks, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_,
+           wide.nodes, wide.leaves, options_.cost_node, options_.cost_block, weights_, weights_given_, keys_,
            tasks, task_count, depth, opened);
     wide.depth = std::max(numbers()[4], context_.download_values<std::uint32_t>(depth, 1).front());
     return wide;
   }
 
-  void top(const cl::Buffer& nodes, const cl::Buffer& blocks, const cl::Buffer& tasks, std::uint32_t write) {
-    launch("collapse: top", "emit_top", 1, tree_.nodes, forests_, tree_.leaf_triangles, nodes, blocks,
+  void top(const cl::Buffer& nodes, const cl::Buffer& leaves, const cl::Buffer& tasks, std::uint32_t write) {
+    launch("collapse: top", "emit_top", 1, tree_.nodes, forests_, tree_.leaf_triangles, nodes, leaves,
            options_.cost_node, options_.cost_block, weights_, weights_given_, keys_, tasks, limit_, numbers_,
            write);
   }
 
-  // The nodes and blocks that the top and all subtrees have together.
+  // The nodes and leaves that the top and all subtrees have together.
   DeviceWideBvh allocate(const cl::Buffer& tasks, std::uint32_t task_count) {
     const auto found = numbers();
     DeviceWideBvh wide;
     wide.triangle_count = tree_.triangle_count;
     wide.frame = tree_.frame;
     wide.node_count = found[1];
-    wide.block_count = found[2];
+    wide.place_count = found[2];
     std::uint32_t largest_leaf = found[3];
     for (const GnCollapseTask& task : context_.download_values<GnCollapseTask>(tasks, task_count)) {
       wide.node_count += task.nodes_below;
-      wide.block_count += task.blocks_below;
+      wide.place_count += task.places_below;
       largest_leaf = std::max(largest_leaf, task.largest_leaf);
     }
     if (largest_leaf > GN_MAX_WIDE_LEAF) throw_leaf_too_large(largest_leaf);
-    if (wide.block_count > GN_MAX_BLOCKS) {
+    if (wide.place_count > GN_MAX_PLACES) {
       throw Error(ErrorCode::kOutOfMemory, "a wide tree of " + std::to_string(tree_.triangle_count) +
-                                               " triangles has more blocks than its links can name");
+                                               " triangles has more of them than its links can name");
     }
     wide.nodes = context_.create_buffer("wide_nodes", wide.node_count * sizeof(WideNode));
-    wide.blocks = context_.create_buffer("triangle_blocks", wide.block_count * sizeof(TriangleBlock));
+    wide.leaves = leaf_buffer(context_, wide.place_count);
     return wide;
   }
 
@@ -174,7 +179,7 @@ DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
     const WideBvh empty = collapse_reference({}, {}, options);
     DeviceWideBvh wide;
     wide.nodes = context.create_buffer("wide_nodes", sizeof(WideNode));
-    wide.blocks = context.create_buffer("triangle_blocks", 0);
+    wide.leaves = leaf_buffer(context, 0);
     wide.node_count = 1;
     wide.depth = 1;
     context.upload_values<WideNode>(wide.nodes, empty.nodes);
@@ -191,8 +196,10 @@ DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
 }
 
 WideBvh download_wide(const cl::Context& context, const DeviceWideBvh& tree) {
-  return {context.download_values<WideNode>(tree.nodes, tree.node_count),
-          context.download_values<TriangleBlock>(tree.blocks, tree.block_count), tree.depth, tree.frame};
+  return {
+      context.download_values<WideNode>(tree.nodes, tree.node_count),
+      context.download_values<std::uint32_t>(tree.leaves, std::size_t{tree.place_count} * GN_TRIANGLE_WORDS),
+      tree.depth, tree.frame};
 }
 
 }  // namespace gnomon

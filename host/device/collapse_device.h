@@ -10,16 +10,17 @@
 
 namespace gnomon {
 
-// A wide tree in device memory: GnWideNode and GnTriangleBlock. All that its traversal needs.
+// A wide tree in device memory: GnWideNode and leaves (gnomon/shared/wide_layout.h). All that its traversal
+// needs.
 struct DeviceWideBvh {
   cl::Buffer nodes;
-  cl::Buffer blocks;
+  cl::Buffer leaves;
   std::uint32_t triangle_count = 0;
   std::uint32_t node_count = 0;
-  std::uint32_t block_count = 0;
+  std::uint32_t place_count = 0;  // of leaves
   std::uint32_t depth = 0;
   std::optional<BoxFrame> frame{};  // Bvh's
-  [[nodiscard]] std::uint64_t bytes() const { return nodes.bytes + blocks.bytes; }
+  [[nodiscard]] std::uint64_t bytes() const { return nodes.bytes + leaves.bytes; }
 };
 
 // The bytes depend on the tree, the options and the keys alone (wide.h says what keys are). Throws Error:

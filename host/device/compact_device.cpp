@@ -67,19 +67,20 @@ class Compactor {
   void write_nodes() {
     const cl::Buffer places = words("compact_node_places", wide_.node_count);
     const cl::Buffer largest = words("compact_largest_leaf", 1);
-    const cl::Buffer starts = words("compact_block_starts", std::size_t{wide_.block_count} + 1);
-    const cl::Buffer block_places = words("compact_block_places", wide_.block_count);
+    const cl::Buffer counts_before = words("compact_counts_before", std::size_t{wide_.place_count} + 1);
+    const cl::Buffer moves = context_.create_buffer("compact_moves", wide_.place_count * sizeof(cl_uint2));
     context_.fill(largest, 0);
-    launch("place_nodes", wide_.node_count, wide_.nodes, places, largest);
+    context_.fill(counts_before, 0);
+    launch("place_nodes", wide_.node_count, wide_.nodes, wide_.leaves, places, largest, counts_before);
     const std::uint32_t most = context_.download_values<std::uint32_t>(largest, 1).front();
     if (most > GN_MAX_COMPACT_LEAF) throw_compact_leaf_too_large(most);
-    launch("count_block_triangles", wide_.block_count, wide_.blocks, starts);
-    scan_values(context_, plan_, starts, wide_.block_count, "compact", times_);
+    scan_values(context_, plan_, counts_before, wide_.place_count, "compact", times_);
     out_.nodes = context_.create_buffer("compact_nodes", wide_.node_count * sizeof(CompactNode));
-    launch("write_nodes", wide_.node_count, wide_.nodes, places, starts, out_.nodes, block_places);
+    launch("write_nodes", wide_.node_count, wide_.nodes, wide_.leaves, places, counts_before, out_.nodes,
+           moves);
     out_.triangles =
         context_.create_buffer("plain_triangles", wide_.triangle_count * sizeof(GnPlainTriangle));
-    launch("write_triangles", GN_WIDTH * wide_.block_count, wide_.blocks, block_places, out_.triangles);
+    launch("write_triangles", wide_.place_count, wide_.leaves, moves, counts_before, out_.triangles);
   }
 
   // Where that pays, plain triangles give way to indexed ones.

@@ -18,8 +18,8 @@ constexpr std::uint32_t kTurnsPerStep = 64;
 // end is guessed wrong more often, with more their walkers leave the first-level cache.
 constexpr std::uint32_t kRaysAtOnce = 24;
 // So many rays for each of a work-group's, that the last ones of an item, which fewer and fewer keep company,
-// are few.
-constexpr std::uint32_t kRunsPerItem = 4;
+// are few, and so is the packet that tells whether others pay.
+constexpr std::uint32_t kRunsPerItem = 8;
 
 // The stack a traversal needs: every level leaves at most one node waiting. A few sizes only, so that trees
 // share compiled programs.
@@ -44,7 +44,7 @@ std::string TracePlan::program_options() const {
     return "-DGN_WIDE_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
            " -DGN_RAYS_PER_ITEM=" + std::to_string(rays_per_item) +
            " -DGN_RAYS_AT_ONCE=" + std::to_string(rays_at_once) + " -DGN_PORTABLE=" + (portable ? "1" : "0") +
-           (fast ? " -DGN_FAST=1" : "") + (framed ? " -DGN_FRAME=1" : "");
+           (fast ? " -DGN_FAST=1" : "") + (framed ? " -DGN_FRAME=1" : "") + (choose ? " -DGN_CHOOSE=1" : "");
   }
   return "-DGN_STACK_SIZE=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
          " -DGN_STEP_LIMIT=" + std::to_string(step_limit);
@@ -104,6 +104,7 @@ TracePlan plan_wide_trace(const cl::DeviceInfo& device, const TraceOptions& opti
   plan.work_group_size = 1;
   plan.wide = true;
   plan.portable = options.portable;
+  plan.choose = options.flavour == TraceFlavour::kAuto;
   plan.fast = options.accuracy == Accuracy::kFast;
   return plan;
 }

@@ -26,6 +26,7 @@ struct TracePlan {
   bool shares_corners = false;  // of a compact tree
   bool portable = false;
   bool fast = false;    // Accuracy::kFast
+  bool choose = false;  // packets where they pay, not wherever there are any
   bool framed = false;  // of a wide tree whose boxes stand in a frame
   [[nodiscard]] std::string program_options() const;
   [[nodiscard]] std::size_t batch_of(std::size_t rays) const;  // rays per launch

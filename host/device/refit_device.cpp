@@ -64,13 +64,13 @@ class Refit {
   }
 
   void wide(DeviceWideBvh& tree) {
-    launch("refit_blocks", tree.block_count, triangles_, tree.blocks, tree.block_count);
+    launch("refit_leaves", tree.node_count, triangles_, tree.nodes, tree.leaves, tree.node_count);
     const auto parents = context_.create_buffer("refit_parents", tree.node_count * sizeof(std::uint32_t));
     const auto levels = context_.create_buffer("refit_levels", tree.node_count * sizeof(std::uint32_t));
     launch("find_parents", tree.node_count, tree.nodes, parents, tree.node_count);
     launch("find_levels", tree.node_count, parents, levels, tree.node_count);
     for (std::uint32_t level = tree.depth; level > 0; --level)
-      launch("refit_level", tree.node_count, tree.nodes, tree.blocks, levels, level - 1, tree.node_count);
+      launch("refit_level", tree.node_count, tree.nodes, tree.leaves, levels, level - 1, tree.node_count);
     finish();
   }
 

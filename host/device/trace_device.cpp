@@ -163,7 +163,7 @@ void Tracer::trace_wide(const DeviceWideBvh& tree, const TraceOptions& options) 
   }
   sort_ = sort_in<GnWideNode>(context_, tree.nodes, options, tree.frame);
   nodes_ = tree.nodes.mem.get();
-  triangles_ = tree.blocks.mem.get();
+  triangles_ = tree.leaves.mem.get();
   set_up(flavour_ == TraceFlavour::kPacket ? "trace_packet.cl" : "trace_wide.cl");
 }
 

@@ -24,12 +24,13 @@ using Hit = GnHit;
 
 // How rays are traced; the answers are the same bits.
 enum class TraceFlavour : std::uint32_t {
-  kAuto,     // packet on CPUs that let loops run, thread elsewhere
+  kAuto,     // on CPUs that let loops run packet where it pays and wide where not, told from what packets do;
+             // thread elsewhere
   kThread,   // the binary tree, one box at a time: one ray per work-item is the parallelism
   kWide,     // the wide tree, eight boxes at a time: explicit vectors are
   kPacket,   // the same; where 64 or 16 consecutive rays run together (through a point, or parallel), as one
-  kCompact,  // two fifths of the wide tree's memory, one ray per work-item: for devices where memory traffic
-             // decides
+  kCompact,  // half of the wide tree's memory or less, one ray per work-item: for devices where memory
+             // traffic decides
 };
 [[nodiscard]] const char* to_string(TraceFlavour flavour);
 

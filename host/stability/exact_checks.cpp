@@ -1,5 +1,6 @@
 // Checks of the geometry group that compare bits: scaled scenes with each other, and sums of whole numbers
 // with the same sums in 64 bits.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -162,14 +163,26 @@ void check_runs(Verdict& verdict) {
   }
 }
 
-// Leaves at both ends of what links can say; none reads as a slot that is empty.
+// Leaves at both ends of what links can say, and their triangles; none reads as a slot that is empty.
 void check_links(Verdict& verdict) {
-  for (const std::uint32_t count : {1U, 8U, 9U, GN_MAX_WIDE_LEAF}) {
-    for (const std::uint32_t block : {0U, 1U, GN_MAX_BLOCKS - gn_blocks_of(count)}) {
-      const std::uint32_t link = gn_leaf_link(block, count);
-      if ((link & GN_LEAF_LINK) == 0 || link == GN_NONE || gn_link_block(link) != block ||
-          gn_link_triangles(link) != count)
-        verdict.fault("a leaf of " + std::to_string(count) + " at block " + std::to_string(block));
+  for (const std::uint32_t count : {1U, 8U, 9U, GN_LONG_LEAF - 1U, GN_LONG_LEAF, GN_MAX_WIDE_LEAF}) {
+    const std::uint32_t places = gn_leaf_places(count);
+    for (const std::uint32_t place : {0U, 1U, GN_MAX_PLACES - places}) {
+      const std::uint32_t link = gn_leaf_link(place, count);
+      const std::string which = "a leaf of " + std::to_string(count) + " at place " + std::to_string(place);
+      if ((link & GN_LEAF_LINK) == 0 || link == GN_NONE || gn_link_place(link) != place) verdict.fault(which);
+      GnLeaf leaf{place + places - count, count};
+      if (count < GN_LONG_LEAF) leaf = gn_leaf_at(nullptr, link);
+      if (leaf.first + leaf.count != place + places || leaf.count != count)
+        verdict.fault("the end of " + which);
+      for (const std::uint32_t i : {0U, count / 2, count - 1}) {
+        const std::uint32_t seat = gn_seat_in(leaf, i);
+        const std::uint32_t block = leaf.first + i / GN_WIDTH * GN_WIDTH;
+        if (gn_seat_word(seat) != GN_TRIANGLE_WORDS * block + i % GN_WIDTH)
+          verdict.fault("triangle " + std::to_string(i) + " of " + which);
+        if (gn_seat_stride(seat) != std::min(GN_WIDTH, leaf.first + leaf.count - block))
+          verdict.fault("the stride of triangle " + std::to_string(i) + " of " + which);
+      }
     }
   }
 }

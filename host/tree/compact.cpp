@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
+#include <numeric>
 
 #include "gnomon/base/error.h"
 #include "gnomon/shared/compact_math.h"
@@ -18,15 +19,19 @@ namespace {
 
 class Compaction {
  public:
-  explicit Compaction(const WideBvh& wide) : wide_(wide), first_in_block_(wide.blocks.size() + 1) {
-    for (std::size_t block = 0; block < wide.blocks.size(); ++block) {
-      const auto& primitives = wide.blocks[block].primitives;
-      const auto filled =
-          std::count_if(primitives, primitives + GN_WIDTH, [](auto p) { return p != GN_NONE; });
-      first_in_block_[block + 1] = first_in_block_[block] + static_cast<std::uint32_t>(filled);
+  explicit Compaction(const WideBvh& wide) : wide_(wide), counts_before_(wide.places() + 1) {
+    std::size_t triangles = 0;
+    for (const WideNode& node : wide.nodes) {
+      for (const std::uint32_t link : node.links) {
+        if (link == GN_NONE || !gn_is_leaf_link(link)) continue;
+        const GnLeaf leaf = gn_leaf_at(wide.leaves.data(), link);
+        triangles += leaf.count;
+        if (leaf.first != gn_link_place(link)) counts_before_[leaf.first] = 1;
+      }
     }
+    std::partial_sum(counts_before_.begin(), counts_before_.end(), counts_before_.begin());
     compact_.nodes.resize(wide.nodes.size());
-    compact_.plain.resize(first_in_block_.back());
+    compact_.plain.resize(triangles);
     compact_.depth = wide.depth;
   }
 
@@ -43,9 +48,9 @@ class Compaction {
     std::uint32_t child_of[GN_WIDTH];
     gn_assign_slots(&node, child_of);
     CompactNode out;
-    gn_fill_compact_node(&node, child_of, &out);
-    const std::uint32_t block = gn_first_block(&node);
-    if (block != GN_NONE) out.first_triangle = first_in_block_[block];
+    gn_fill_compact_node(&node, wide_.leaves.data(), child_of, &out);
+    const std::uint32_t first = gn_first_place(&node);
+    if (first != GN_NONE) out.first_triangle = first - counts_before_[first];
     std::uint32_t next_triangle = out.first_triangle;
     std::uint32_t next_node = out.first_node;
     for (const std::uint32_t child : child_of) {
@@ -62,15 +67,15 @@ class Compaction {
   }
 
   std::uint32_t write_leaf(std::uint32_t link, std::uint32_t place) {
-    const std::uint32_t count = gn_link_triangles(link);
-    if (count > GN_MAX_COMPACT_LEAF) throw_compact_leaf_too_large(count);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const TriangleBlock& block = wide_.blocks[gn_link_block(link) + i / GN_WIDTH];
-      GnPlainTriangle& out = compact_.plain[place + i];
-      for (int k = 0; k < 9; ++k) out.corners[k] = block.corners[k][i % GN_WIDTH];
-      out.primitive = block.primitives[i % GN_WIDTH];
+    const GnLeaf leaf = gn_leaf_at(wide_.leaves.data(), link);
+    if (leaf.count > GN_MAX_COMPACT_LEAF) throw_compact_leaf_too_large(leaf.count);
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      const std::uint32_t seat = gn_seat_in(leaf, i);
+      const GnTriangle triangle = triangle_in(wide_, seat);
+      std::memcpy(compact_.plain[place + i].corners, &triangle, sizeof triangle);
+      compact_.plain[place + i].primitive = number_in(wide_, seat);
     }
-    return place + count;
+    return place + leaf.count;
   }
 
   void share_corners() {
@@ -98,7 +103,7 @@ class Compaction {
   }
 
   const WideBvh& wide_;
-  std::vector<std::uint32_t> first_in_block_;
+  std::vector<std::uint32_t> counts_before_;  // places before each that hold a long leaf's count instead
   CompactBvh compact_;
 };
 

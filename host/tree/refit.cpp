@@ -47,16 +47,7 @@ std::vector<std::uint32_t> from_the_root(const Bvh& bvh) {
 class WideRefit {
  public:
   WideRefit(WideBvh& wide, std::span<const GnTriangle> triangles)
-      : wide_(wide), boxes_(checked_boxes(triangles)) {
-    for (TriangleBlock& block : wide.blocks) {
-      for (std::uint32_t lane = 0; lane < GN_WIDTH; ++lane) {
-        if (block.primitives[lane] == GN_NONE) continue;
-        float corners[9];
-        std::memcpy(corners, &triangles[block.primitives[lane]], sizeof corners);
-        for (int k = 0; k < 9; ++k) block.corners[k][lane] = corners[k];
-      }
-    }
-  }
+      : wide_(wide), triangles_(triangles), boxes_(checked_boxes(triangles)) {}
 
   // The box of all that is below the node. Depth is that of the tree: recursion is shallow.
   GnPrimitive node(std::uint32_t index) {
@@ -76,24 +67,30 @@ class WideRefit {
   }
 
  private:
-  [[nodiscard]] GnPrimitive leaf(std::uint32_t link) const {
+  GnPrimitive leaf(std::uint32_t link) {
+    const GnLeaf leaf = gn_leaf_at(wide_.leaves.data(), link);
     GnPrimitive box{};
     gn_empty_box(box.lo, box.hi);
-    for (std::uint32_t i = 0; i < gn_link_triangles(link); ++i) {
-      const TriangleBlock& block = wide_.blocks[gn_link_block(link) + i / GN_WIDTH];
-      grow(box, boxes_[block.primitives[i % GN_WIDTH]]);
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      const std::uint32_t seat = gn_seat_in(leaf, i);
+      const std::uint32_t number = number_in(wide_, seat);
+      put_triangle(wide_, seat, triangles_[number]);
+      grow(box, boxes_[number]);
     }
     return box;
   }
 
   WideBvh& wide_;
+  std::span<const GnTriangle> triangles_;
   std::vector<GnPrimitive> boxes_;
 };
 
 std::size_t triangles_of(const WideBvh& wide) {
   std::size_t count = 0;
-  for (const TriangleBlock& block : wide.blocks)
-    count += GN_WIDTH - std::count(block.primitives, block.primitives + GN_WIDTH, GN_NONE);
+  for (const WideNode& node : wide.nodes) {
+    for (const std::uint32_t link : node.links)
+      if (link != GN_NONE && (link & GN_LEAF_LINK) != 0) count += gn_leaf_at(wide.leaves.data(), link).count;
+  }
   return count;
 }
 

@@ -18,11 +18,6 @@ struct Waiting {
   [[nodiscard]] float entry() const { return std::bit_cast<float>(key & ~7U); }
 };
 
-struct Place {
-  const TriangleBlock* block;
-  std::uint32_t lane;
-};
-
 class Walk {
  public:
   Walk(const WideBvh& wide, const Ray& ray, bool any_hit)
@@ -95,64 +90,54 @@ class Walk {
 
   // True when the walk is over.
   bool test_leaf(std::uint32_t link) {
-    const std::uint32_t count = gn_link_triangles(link);
-    counters.triangles += count;
-    for (std::uint32_t i = 0; i < count; ++i) {
+    const GnLeaf leaf = gn_leaf_at(wide_.leaves.data(), link);
+    counters.triangles += leaf.count;
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
       if (i % GN_WIDTH == 0) steps.blocks += 1;
-      test_triangle({&wide_.blocks[gn_link_block(link) + i / GN_WIDTH], i % GN_WIDTH});
+      test_triangle(gn_seat_in(leaf, i));
       if (any_hit_ && found_) return true;
     }
     return false;
   }
 
-  static GnTriangle triangle_at(const Place& place) {
-    GnTriangle t{};
-    for (int k = 0; k < 3; ++k) {
-      t.v0[k] = place.block->corners[k][place.lane];
-      t.v1[k] = place.block->corners[3 + k][place.lane];
-      t.v2[k] = place.block->corners[6 + k][place.lane];
-    }
-    return t;
-  }
-
-  void test_triangle(const Place& place) {
-    const GnTriangle t = triangle_at(place);
+  void test_triangle(std::uint32_t seat) {
+    const GnTriangle t = triangle_in(wide_, seat);
     const GnEdges e = gn_triangle_edges(&frame_, t.v0, t.v1, t.v2);
     const int verdict = gn_edges_verdict(&e);
     if (verdict == 0) return;
-    if (verdict < 0) return test_exactly(place, verdict);
+    if (verdict < 0) return test_exactly(seat, verdict);
     float error = 0.0F;
     const float at =
         gn_met_at(e.az, e.bz, e.cz, e.u, e.v, e.w, e.bound, e.z, frame_.inverse[frame_.kz], &error);
-    test_met(place, at - error, at + error);
+    test_met(seat, at - error, at + error);
   }
 
   // A triangle that is met for certain, by floats between nearest and farthest.
-  void test_met(const Place& place, float nearest, float farthest) {
-    if (!(farthest - nearest < GN_INFINITY)) return test_exactly(place, -1);  // something overflowed
+  void test_met(std::uint32_t seat, float nearest, float farthest) {
+    if (!(farthest - nearest < GN_INFINITY)) return test_exactly(seat, -1);  // something overflowed
     if (farthest < ray_.tmin || nearest > ray_.tmax) return;
     if (found_ && nearest > farthest_) return;
     if (!(nearest >= ray_.tmin && farthest <= ray_.tmax && (!found_ || farthest < nearest_)))
-      return test_exactly(place, 1);
+      return test_exactly(seat, 1);
     found_ = true;
     pending_ = true;
-    place_ = place;
-    best.primitive = place.block->primitives[place.lane];
+    seat_ = seat;
+    best.primitive = number_in(wide_, seat);
     nearest_ = nearest;
     farthest_ = farthest;
     limit_ = limit_for(farthest);
   }
 
-  bool resolve(const Place& place, int verdict, Hit& hit) const {
-    const GnTriangle t = triangle_at(place);
-    hit.primitive = place.block->primitives[place.lane];
+  bool resolve(std::uint32_t seat, int verdict, Hit& hit) const {
+    const GnTriangle t = triangle_in(wide_, seat);
+    hit.primitive = number_in(wide_, seat);
     return gn_triangle_resolve(&frame_, t.v0, t.v1, t.v2, verdict, &hit) != 0;
   }
 
-  void test_exactly(const Place& place, int verdict) {
+  void test_exactly(std::uint32_t seat, int verdict) {
     steps.exact += 1;
     Hit hit{};
-    if (!resolve(place, verdict, hit) || !(hit.t >= ray_.tmin && hit.t <= ray_.tmax)) return;
+    if (!resolve(seat, verdict, hit) || !(hit.t >= ray_.tmin && hit.t <= ray_.tmax)) return;
     settle();
     if (!found_ || gn_hit_is_nearer(&hit, &best) != 0) take(hit);
   }
@@ -160,7 +145,7 @@ class Walk {
   // Makes a hit that floats found exact.
   void settle() {
     Hit hit{};
-    if (pending_ && resolve(place_, 1, hit)) take(hit);
+    if (pending_ && resolve(seat_, 1, hit)) take(hit);
   }
 
   void take(const Hit& hit) {
@@ -181,7 +166,7 @@ class Walk {
   float limit_ = 0.0F;
   bool found_ = false;
   bool pending_ = false;  // floats found the nearest hit so far; what it is exactly is not worked out yet
-  Place place_{};
+  std::uint32_t seat_ = 0;
   float nearest_ = std::numeric_limits<float>::infinity();  // the nearest hit so far lies between
   float farthest_ = std::numeric_limits<float>::infinity();
 };

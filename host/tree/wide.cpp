@@ -4,6 +4,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -131,19 +132,19 @@ class Collapse {
   }
 
   std::uint32_t add_leaf(std::uint32_t node, std::uint32_t count) {
-    const auto block = static_cast<std::uint32_t>(wide_.blocks.size());
+    const auto place = static_cast<std::uint32_t>(wide_.places());
     const std::uint32_t first = gn_first_triangle(bvh_.nodes.data(), node);
-    wide_.blocks.resize(wide_.blocks.size() + gn_blocks_of(count));
-    for (std::uint32_t i = 0; i < gn_blocks_of(count) * GN_WIDTH; ++i) {
-      TriangleBlock& out = wide_.blocks[block + i / GN_WIDTH];
-      const std::uint32_t lane = i % GN_WIDTH;
-      out.primitives[lane] = i < count ? bvh_.primitives[first + i] : GN_NONE;
-      if (i >= count) continue;
-      float corners[9];
-      std::memcpy(corners, &triangles_[out.primitives[lane]], sizeof corners);
-      for (int k = 0; k < 9; ++k) out.corners[k][lane] = corners[k];
+    const std::uint32_t link = gn_leaf_link(place, count);
+    wide_.leaves.resize(wide_.leaves.size() + std::size_t{gn_leaf_places(count)} * GN_TRIANGLE_WORDS);
+    if (count >= GN_LONG_LEAF) wide_.leaves[std::size_t{place} * GN_TRIANGLE_WORDS] = count;
+    const GnLeaf leaf = gn_leaf_at(wide_.leaves.data(), link);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::uint32_t seat = gn_seat_in(leaf, i);
+      const std::uint32_t number = bvh_.primitives[first + i];
+      put_triangle(wide_, seat, triangles_[number]);
+      wide_.leaves[gn_seat_word(seat) + 9 * gn_seat_stride(seat)] = number + GN_NUMBER;
     }
-    return gn_leaf_link(block, count);
+    return link;
   }
 
   const Bvh& bvh_;
@@ -175,6 +176,23 @@ double node_area(const WideNode& node) {
 }
 
 }  // namespace
+
+GnTriangle triangle_in(const WideBvh& wide, std::uint32_t seat) {
+  float corners[9];
+  for (std::uint32_t k = 0; k < 9; ++k)
+    corners[k] = std::bit_cast<float>(wide.leaves[gn_seat_word(seat) + k * gn_seat_stride(seat)]);
+  GnTriangle triangle;
+  static_assert(sizeof triangle == sizeof corners);
+  std::memcpy(&triangle, corners, sizeof corners);
+  return triangle;
+}
+
+void put_triangle(WideBvh& wide, std::uint32_t seat, const GnTriangle& triangle) {
+  float corners[9];
+  std::memcpy(corners, &triangle, sizeof corners);
+  for (std::uint32_t k = 0; k < 9; ++k)
+    wide.leaves[gn_seat_word(seat) + k * gn_seat_stride(seat)] = std::bit_cast<std::uint32_t>(corners[k]);
+}
 
 void throw_leaf_too_large(std::uint32_t triangles) {
   throw Error(ErrorCode::kInvalidArgument, "a leaf of " + std::to_string(triangles) +
@@ -243,15 +261,16 @@ WideStats stats_of(const WideBvh& wide) {
       if ((link & GN_LEAF_LINK) == 0) {
         stats.expected_nodes += probability(slot_area(node, slot));
       } else {
-        triangles += gn_link_triangles(link);
-        stats.expected_blocks += probability(slot_area(node, slot)) * gn_blocks_of(gn_link_triangles(link));
+        const std::uint32_t count = gn_leaf_at(wide.leaves.data(), link).count;
+        triangles += count;
+        stats.blocks += gn_blocks_of(count);
+        stats.expected_blocks += probability(slot_area(node, slot)) * gn_blocks_of(count);
       }
     }
   }
   stats.mean_children = static_cast<double>(children) / static_cast<double>(wide.nodes.size());
-  if (!wide.blocks.empty())
-    stats.mean_block = static_cast<double>(triangles) / static_cast<double>(wide.blocks.size());
-  stats.bytes = wide.nodes.size() * sizeof(WideNode) + wide.blocks.size() * sizeof(TriangleBlock);
+  if (stats.blocks > 0) stats.mean_block = static_cast<double>(triangles) / static_cast<double>(stats.blocks);
+  stats.bytes = wide.nodes.size() * sizeof(WideNode) + wide.leaves.size() * sizeof(std::uint32_t);
   return stats;
 }
 
@@ -259,7 +278,7 @@ std::string tree_hash(const WideBvh& wide) {
   XXH3_state_t state;
   XXH3_64bits_reset(&state);
   XXH3_64bits_update(&state, wide.nodes.data(), wide.nodes.size() * sizeof(WideNode));
-  XXH3_64bits_update(&state, wide.blocks.data(), wide.blocks.size() * sizeof(TriangleBlock));
+  XXH3_64bits_update(&state, wide.leaves.data(), wide.leaves.size() * sizeof(std::uint32_t));
   if (wide.frame) XXH3_64bits_update(&state, &*wide.frame, sizeof(BoxFrame));
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(XXH3_64bits_digest(&state)));

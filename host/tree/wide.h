@@ -1,5 +1,6 @@
-// The wide tree as a value: a binary tree collapsed to eight children a node and eight triangles a block, for
-// traversal on CPUs. Not for building the binary tree. Feeds the wide tracer's reference, tests, statistics.
+// The wide tree as a value: a binary tree collapsed to eight children a node and leaves in blocks of up to
+// eight triangles, for traversal on CPUs. Not for building the binary tree. Feeds the wide tracer's
+// reference, tests, statistics.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +16,11 @@
 namespace gnomon {
 
 using WideNode = GnWideNode;
-using TriangleBlock = GnTriangleBlock;
 
 // What a step costs, in any unit: the collapse weighs nodes against blocks with these.
 struct CollapseOptions {
   float cost_node = 1.0F;   // (0, 1000]
-  float cost_block = 1.0F;  // of eight triangles; (0, 1000]
+  float cost_block = 1.0F;  // of up to eight triangles; (0, 1000]
 
   // How the device works, never what it makes: 0 asks the device.
   std::uint32_t triangles_per_task = 0;  // of a subtree that one work-item writes; up to 1048576
@@ -32,10 +32,18 @@ struct CollapseOptions {
 // An empty scene has one node without children. The root is node 0.
 struct WideBvh {
   std::vector<WideNode> nodes;
-  std::vector<TriangleBlock> blocks;
-  std::uint32_t depth = 0;          // nodes on the longest way from the root to a leaf
-  std::optional<BoxFrame> frame{};  // Bvh's
+  std::vector<std::uint32_t> leaves;  // places of GN_TRIANGLE_WORDS words (gnomon/shared/wide_layout.h)
+  std::uint32_t depth = 0;            // nodes on the longest way from the root to a leaf
+  std::optional<BoxFrame> frame{};    // Bvh's
+  [[nodiscard]] std::size_t places() const { return leaves.size() / GN_TRIANGLE_WORDS; }
 };
+
+// The corners and the number of the triangle in a seat (gn_seat_in), which must be one of the tree's.
+[[nodiscard]] GnTriangle triangle_in(const WideBvh& wide, std::uint32_t seat);
+[[nodiscard]] inline std::uint32_t number_in(const WideBvh& wide, std::uint32_t seat) {
+  return gn_number_at(wide.leaves.data(), seat);
+}
+void put_triangle(WideBvh& wide, std::uint32_t seat, const GnTriangle& triangle);
 
 // Leaves of the binary tree may hold up to GN_MAX_WIDE_LEAF triangles; others make it throw
 // Error{kInvalidArgument}. Collapses with the least expected cost under the surface area heuristic (Ylitie,
@@ -62,11 +70,12 @@ struct WideStats {
   double expected_blocks = 0.0;
   double mean_children = 0.0;  // of 8
   double mean_block = 0.0;     // triangles in a block, of 8
-  std::uint64_t bytes = 0;     // nodes and blocks
+  std::uint64_t blocks = 0;
+  std::uint64_t bytes = 0;  // nodes and leaves
 };
 [[nodiscard]] WideStats stats_of(const WideBvh& wide);
 
-// The first broken promise, or nothing: links in range and each node and block reached once, boxes that hold
+// The first broken promise, or nothing: links in range and each node and place reached once, boxes that hold
 // their triangles and lie inside the parent's, every triangle once with its corners, empty slots inverted and
 // last, depth. Any bytes may come in. Not the order of slots, which is free.
 // Where triangles may be in several leaves (Builder::kBest), these need only hold all of one between them.
@@ -74,7 +83,7 @@ enum class Repeats { kNone, kAllowed };
 [[nodiscard]] std::optional<BvhFault> check_wide(const WideBvh& wide, std::span<const GnTriangle> triangles,
                                                  Repeats repeats = Repeats::kNone);
 
-// XXH3-64 of nodes and blocks, 16 hex digits.
+// XXH3-64 of nodes and leaves, 16 hex digits.
 [[nodiscard]] std::string tree_hash(const WideBvh& wide);
 
 }  // namespace gnomon

@@ -89,10 +89,11 @@ class Check {
 
   MaybeFault check_sizes() {
     if (wide_.nodes.empty()) return fault("sizes: no root");
-    if (wide_.nodes.size() > GN_LEAF_LINK || wide_.blocks.size() > GN_MAX_BLOCKS)
-      return fault("sizes: more nodes or blocks than links can name");
+    if (wide_.nodes.size() > GN_LEAF_LINK || wide_.places() > GN_MAX_PLACES)
+      return fault("sizes: more nodes or leaves than links can name");
+    if (wide_.leaves.size() % GN_TRIANGLE_WORDS != 0) return fault("sizes: part of a place");
     node_seen_.assign(wide_.nodes.size(), 0);
-    block_seen_.assign(wide_.blocks.size(), 0);
+    place_seen_.assign(wide_.places(), 0);
     triangle_seen_.assign(triangles_.size(), 0);
     return std::nullopt;
   }
@@ -109,7 +110,7 @@ class Check {
       for (const std::uint32_t link : wide_.nodes[index].links) {
         if (link == GN_NONE) continue;
         if (is_leaf(link)) {
-          if (MaybeFault found = take_blocks(index, link)) return found;
+          if (MaybeFault found = take_places(index, link)) return found;
           continue;
         }
         if (link >= wide_.nodes.size())
@@ -123,20 +124,30 @@ class Check {
     const auto lost_node = std::find(node_seen_.begin(), node_seen_.end(), 0);
     if (lost_node != node_seen_.end())
       return fault("links: node never referenced", index_in(node_seen_, lost_node));
-    const auto lost_block = std::find(block_seen_.begin(), block_seen_.end(), 0);
-    if (lost_block == block_seen_.end()) return std::nullopt;
-    return fault("links: block " + text(index_in(block_seen_, lost_block)) + " is in no leaf");
+    const auto lost_place = std::find(place_seen_.begin(), place_seen_.end(), 0);
+    if (lost_place == place_seen_.end()) return std::nullopt;
+    return fault("links: place " + text(index_in(place_seen_, lost_place)) + " is in no leaf");
   }
 
-  MaybeFault take_blocks(std::uint32_t index, std::uint32_t link) {
-    const std::uint64_t first = gn_link_block(link);
-    const std::uint64_t end = first + gn_blocks_of(gn_link_triangles(link));
-    if (end > wide_.blocks.size()) {
-      return fault("links: a leaf's blocks end at " + text(end) + " of " + text(wide_.blocks.size()), index);
+  MaybeFault take_places(std::uint32_t index, std::uint32_t link) {
+    const std::uint64_t first = gn_link_place(link);
+    if (first >= wide_.places()) {
+      return fault("links: a leaf begins at place " + text(first) + " of " + text(wide_.places()), index);
     }
-    for (std::uint64_t block = first; block < end; ++block) {
-      if (block_seen_[block] != 0) return fault("links: block " + text(block) + " is in two leaves", index);
-      block_seen_[block] = 1;
+    const GnLeaf leaf = gn_leaf_at(wide_.leaves.data(), link);
+    const bool is_long = leaf.first != first;
+    if (is_long && (leaf.count < GN_LONG_LEAF || leaf.count > GN_MAX_WIDE_LEAF))
+      return fault("leaves: a long one of " + text(leaf.count) + " triangles", index);
+    const std::uint64_t end = std::uint64_t{leaf.first} + leaf.count;
+    if (end > wide_.places()) {
+      return fault("links: a leaf's places end at " + text(end) + " of " + text(wide_.places()), index);
+    }
+    const auto count = wide_.leaves.begin() + static_cast<std::ptrdiff_t>(first * GN_TRIANGLE_WORDS);
+    if (is_long && std::any_of(count + 1, count + GN_TRIANGLE_WORDS, [](auto word) { return word != 0; }))
+      return fault("leaves: something behind a long one's count", index);
+    for (std::uint64_t place = first; place < end; ++place) {
+      if (place_seen_[place] != 0) return fault("links: place " + text(place) + " is in two leaves", index);
+      place_seen_[place] = 1;
     }
     return std::nullopt;
   }
@@ -183,18 +194,10 @@ class Check {
   }
 
   MaybeFault check_leaf(std::uint32_t index, const Node& box, std::uint32_t link) {
-    const std::uint32_t count = gn_link_triangles(link);
-    for (std::uint32_t i = 0; i < gn_blocks_of(count) * GN_WIDTH; ++i) {
-      const TriangleBlock& block = wide_.blocks[gn_link_block(link) + i / GN_WIDTH];
-      const std::uint32_t lane = i % GN_WIDTH;
-      const std::uint32_t primitive = block.primitives[lane];
-      float corners[9];
-      for (int k = 0; k < 9; ++k) corners[k] = block.corners[k][lane];
-      if (i >= count) {
-        if (primitive != GN_NONE || std::any_of(corners, corners + 9, [](float x) { return x != 0.0F; }))
-          return fault("blocks: something behind a leaf's last triangle", index);
-        continue;
-      }
+    const GnLeaf leaf = gn_leaf_at(wide_.leaves.data(), link);
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      const std::uint32_t primitive = number_in(wide_, gn_seat_in(leaf, i));
+      const GnTriangle held = triangle_in(wide_, gn_seat_in(leaf, i));
       if (primitive >= triangles_.size())
         return fault("triangles: number " + text(primitive) + " of " + text(triangles_.size()), index);
       if (triangle_seen_[primitive] != 0 && repeats_ == Repeats::kNone)
@@ -203,7 +206,7 @@ class Check {
       if (repeats_ == Repeats::kAllowed) boxes_.add(primitive, box);
       for (int k = 0; k < 3; ++k) {
         const float* corner = corner_of(triangles_[primitive], k);
-        if (!std::equal(corner, corner + 3, corners + 3 * k))
+        if (!std::equal(corner, corner + 3, corner_of(held, k)))
           return fault("triangles: corner " + text(static_cast<unsigned>(k)) + " of " + text(primitive) +
                            " is another",
                        index);
@@ -220,7 +223,7 @@ class Check {
   std::span<const GnTriangle> boxed_;  // as boxes stand
   Repeats repeats_;
   TriangleBoxes boxes_;
-  std::vector<char> node_seen_, block_seen_, triangle_seen_;
+  std::vector<char> node_seen_, place_seen_, triangle_seen_;
   std::vector<std::uint32_t> order_;
   std::uint32_t deepest_ = 0;
 };

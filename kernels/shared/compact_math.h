@@ -108,7 +108,8 @@ GN_INLINE int gn_is_leaf_link(gn_u32 link) { return (link & GN_LEAF_LINK) != 0u;
 
 // Everything of the compact node but where its triangles begin. Children of a wide node that are nodes have
 // neighbouring numbers; the least is where their compact nodes go, in order of slots.
-GN_INLINE void gn_fill_compact_node(GN_WIDE_SPACE const GnWideNode* node, const gn_u32* child_of, GnCompactNode* out) {
+GN_INLINE void gn_fill_compact_node(GN_WIDE_SPACE const GnWideNode* node, GN_GLOBAL const gn_u32* leaves,
+                                    const gn_u32* child_of, GnCompactNode* out) {
   gn_f32 lo[3], hi[3];
   gn_u32 slot, scale[3];
   int k;
@@ -133,7 +134,7 @@ GN_INLINE void gn_fill_compact_node(GN_WIDE_SPACE const GnWideNode* node, const 
       out->planes[2 * k + 1][word] |= gn_step_above(out->origin[k], scale[k], node->planes[2 * k + 1][child]) << shift;
     }
     if (gn_is_leaf_link(link)) {
-      out->counts[word] |= (gn_link_triangles(link) & 255u) << shift;
+      out->counts[word] |= (gn_leaf_at(leaves, link).count & 255u) << shift;
     } else {
       out->scales |= 1u << (24u + slot);
       if (link < out->first_node) out->first_node = link;
@@ -142,12 +143,12 @@ GN_INLINE void gn_fill_compact_node(GN_WIDE_SPACE const GnWideNode* node, const 
   if (out->first_node == GN_NONE) out->first_node = 0u;
 }
 
-// The first block of a wide node's leaves: they have neighbouring numbers. GN_NONE for a node without leaves.
-GN_INLINE gn_u32 gn_first_block(GN_WIDE_SPACE const GnWideNode* node) {
+// The first place of a wide node's leaves: they have neighbouring places. GN_NONE for a node without leaves.
+GN_INLINE gn_u32 gn_first_place(GN_WIDE_SPACE const GnWideNode* node) {
   gn_u32 slot, first = GN_NONE;
   for (slot = 0u; slot < GN_WIDTH && node->links[slot] != GN_NONE; ++slot) {
     const gn_u32 link = node->links[slot];
-    if (gn_is_leaf_link(link) && gn_link_block(link) < first) first = gn_link_block(link);
+    if (gn_is_leaf_link(link) && gn_link_place(link) < first) first = gn_link_place(link);
   }
   return first;
 }

@@ -1,5 +1,5 @@
-// The wide tree as traversal on CPUs reads it: nodes of eight boxes and blocks of eight triangles, both with the eight
-// side by side so that one vector holds a coordinate of all. Made by collapse.cl from the binary tree, read by
+// The wide tree as traversal on CPUs reads it: nodes of eight boxes and leaves in blocks of eight triangles, both with the
+// eight side by side so that one vector holds a coordinate of all. Made by collapse.cl from the binary tree, read by
 // trace_wide.cl and by their references. Same rules as layout.h.
 #ifndef GNOMON_SHARED_WIDE_LAYOUT_H
 #define GNOMON_SHARED_WIDE_LAYOUT_H
@@ -16,31 +16,62 @@ typedef struct GnWideNode {
 } GnWideNode;
 GN_SIZE_IS(GnWideNode, 224);
 
-// A link to a node is its index. A link to a leaf has the top bit set, eight bits of triangle count - 1, and the
-// index of its first block; the leaf's triangles fill one block after the other.
+// Leaves lie in places of ten words, one a triangle, in blocks of up to eight triangles: first all their first corners' x,
+// then all their y, ..., and at last their numbers. A block of fewer than eight is as much shorter, so that no memory is
+// spent on what is not there: vectors of eight read on into what follows, and their lanes behind the last triangle say
+// nothing. So GN_LEAF_SLACK words follow the last place, and numbers are written as GN_NUMBER more than they are: read as
+// floats they would be denormal, which is slow.
+#define GN_TRIANGLE_WORDS 10u
+#define GN_LEAF_SLACK 8u
+#define GN_NUMBER 0x40000000u
+#define GN_MAX_PLACES 0x04000000u
+
+// A link to a node is its index. A link to a leaf has the top bit set, five bits of triangle count - 1, and its first place.
+// A long leaf has GN_LONG_LEAF triangles or more: its first place begins with how many, and they follow.
 #define GN_LEAF_LINK 0x80000000u
+#define GN_LONG_LEAF 32u
 #define GN_MAX_WIDE_LEAF 256u
-#define GN_MAX_BLOCKS 0x00800000u
-GN_INLINE gn_u32 gn_leaf_link(gn_u32 block, gn_u32 triangles) {
-  return GN_LEAF_LINK | ((triangles - 1u) << 23) | block;
+GN_INLINE gn_u32 gn_leaf_link(gn_u32 place, gn_u32 triangles) {
+  return GN_LEAF_LINK | (((triangles < GN_LONG_LEAF ? triangles : GN_LONG_LEAF) - 1u) << 26) | place;
 }
-GN_INLINE gn_u32 gn_link_block(gn_u32 link) { return link & (GN_MAX_BLOCKS - 1u); }
-GN_INLINE gn_u32 gn_link_triangles(gn_u32 link) { return ((link >> 23) & 255u) + 1u; }
+GN_INLINE gn_u32 gn_link_place(gn_u32 link) { return link & (GN_MAX_PLACES - 1u); }
+GN_INLINE gn_u32 gn_leaf_places(gn_u32 triangles) { return triangles < GN_LONG_LEAF ? triangles : triangles + 1u; }
 GN_INLINE gn_u32 gn_blocks_of(gn_u32 triangles) { return (triangles + GN_WIDTH - 1u) / GN_WIDTH; }
+
+// The places of a leaf's triangles.
+typedef struct GnLeaf {
+  gn_u32 first;
+  gn_u32 count;
+} GnLeaf;
+GN_INLINE GnLeaf gn_leaf_at(GN_GLOBAL const gn_u32* leaves, gn_u32 link) {
+  GnLeaf leaf;
+  leaf.first = gn_link_place(link);
+  leaf.count = ((link >> 26) & 31u) + 1u;
+  if (leaf.count == GN_LONG_LEAF) {
+    leaf.count = leaves[GN_TRIANGLE_WORDS * leaf.first];
+    leaf.first += 1u;
+  }
+  return leaf;
+}
+
+// A triangle's seat, by which its words are found: the first place of its block, how many sit there, and which it is.
+GN_INLINE gn_u32 gn_seat(gn_u32 first, gn_u32 count, gn_u32 lane) { return 64u * first + 8u * (count - 1u) + lane; }
+GN_INLINE gn_u32 gn_seat_in(GnLeaf leaf, gn_u32 i) {
+  const gn_u32 before = i / GN_WIDTH * GN_WIDTH, rest = leaf.count - before;
+  return gn_seat(leaf.first + before, rest < GN_WIDTH ? rest : GN_WIDTH, i - before);
+}
+// The word of its first coordinate, how far on the next one is, and the word of its number.
+GN_INLINE gn_u32 gn_seat_word(gn_u32 seat) { return GN_TRIANGLE_WORDS * (seat >> 6) + (seat & 7u); }
+GN_INLINE gn_u32 gn_seat_stride(gn_u32 seat) { return ((seat >> 3) & 7u) + 1u; }
+GN_INLINE gn_u32 gn_number_at(GN_GLOBAL const gn_u32* leaves, gn_u32 seat) {
+  return leaves[gn_seat_word(seat) + 9u * gn_seat_stride(seat)] - GN_NUMBER;
+}
 
 // The end of a run of `length` items from `first` on, of `count` in all, first being no more than that. Never beyond
 // 2^32, where first + length may be.
 GN_INLINE gn_u32 gn_run_end(gn_u32 first, gn_u32 count, gn_u32 length) {
   return count - first < length ? count : first + length;
 }
-
-// Eight triangles: corners[3 * corner + axis] of all, and their numbers in the caller's array. Places behind a leaf's
-// last triangle are zero and have the number GN_NONE.
-typedef struct GnTriangleBlock {
-  gn_f32 corners[9][8];
-  gn_u32 primitives[8];
-} GnTriangleBlock;
-GN_SIZE_IS(GnTriangleBlock, 320);
 
 // What the collapse may do with the subtree of an inner node: cost[i - 1] is the least expected cost of replacing it
 // by at most i wide nodes or leaves, relative to a ray that meets everything.
@@ -61,8 +92,8 @@ GN_SIZE_IS(GnOpened, 48);
 typedef struct GnCollapseTask {
   gn_u32 root;         // in the binary tree
   gn_u32 node;         // of the wide tree
-  gn_u32 nodes_below;  // first wide node of those below; while counting: how many
-  gn_u32 blocks_below;
+  gn_u32 nodes_below;  // first wide node of those below, first place of their leaves; while counting: how many
+  gn_u32 places_below;
   gn_u32 depth;
   gn_u32 largest_leaf;  // triangles
   gn_u32 pad[2];

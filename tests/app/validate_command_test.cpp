@@ -65,7 +65,7 @@ TEST_CASE("kernels that lose hits near the edges of triangles are caught") {
   const BrokenKernels broken({{"shared/hit_math.h", "  return -1;", "  return 0;"},
                               {"shared/hit_math.h", "edges.bound = ", "edges.bound = 4096.0f * "},
                               {"wide_leaf.h", ": GN_EDGE_ERROR_8 * ", ": 4096.0f * GN_EDGE_ERROR_8 * "},
-                              {"wide_leaf.h", "test_exactly(walk, ray, block, lane, -1);", ";"},
+                              {"wide_leaf.h", "test_exactly(walk, ray, leaves, seat, -1);", ";"},
                               {"packet_leaf.h", ": GN_PACKET_ERROR * ", ": 256.0f * GN_PACKET_ERROR * "},
                               {"packet_leaf.h", "      decide(p, rays", "      if (sure) decide(p, rays"}});
   const auto outcome = run(kValidate, broken.setup());

@@ -13,10 +13,11 @@ using namespace gnomon::test;
 namespace {
 
 // The largest share of rays that have the counts of the fifteen beside them: those of a packet do.
-double share_in_packets(const Triangles& triangles, const Rays& rays, bool any_hit) {
+double share_in_packets(const Triangles& triangles, const Rays& rays, bool any_hit,
+                        TraceFlavour flavour = TraceFlavour::kPacket) {
   gnomon::TraceOptions options;
   options.counters = true;
-  options.flavour = TraceFlavour::kPacket;
+  options.flavour = flavour;
   const auto tree = gnomon::build_device(context(), triangles);
   const gnomon::Tracer tracer(context(), tree, options);
   const auto counters = (any_hit ? tracer.any(rays) : tracer.closest(rays)).counters;
@@ -69,6 +70,29 @@ TEST_CASE("rays that run together are traced as packets", "[unlimited]") {
   }
   // And others are not.
   REQUIRE(share_in_packets(triangles, random_rays(4096, 204), false) < 0.1);
+}
+
+TEST_CASE(
+    "left to us, packets are made where they pay, and elsewhere one of each work-item's tells that they do "
+    "not",
+    "[unlimited]") {
+  if (!context().device().is_cpu) return;
+  const auto large = soup(2000, 203, 1.0F);
+  const Rays close = camera_rays(16, {5, 4, 30}, {-0.1F, 0.05F, -1}, 0.1F);
+  // Of these few are met: what rays by themselves would take is nearly all nodes.
+  const auto thin = soup(20000, 219, 0.01F);
+  const Rays beside = camera_rays(16, {5, 4, 30}, {-0.1F, 0.05F, -1}, 0.4F);
+  const auto fine = soup(60000, 217, 0.05F);
+  const Rays apart = sun_rays(6, {0.4F, -0.8F, 0.45F}, 9.0F);
+  for (const bool any_hit : {false, true}) {
+    CAPTURE(any_hit);
+    REQUIRE(share_in_packets(large, close, any_hit, TraceFlavour::kAuto) > 0.9);
+    REQUIRE(share_in_packets(thin, beside, any_hit, TraceFlavour::kAuto) > 0.9);
+    REQUIRE(share_in_packets(fine, apart, any_hit) > 0.8);
+    // Alike by chance are few: the first of eight packets is left.
+    REQUIRE(share_in_packets(fine, apart, any_hit, TraceFlavour::kAuto) < 0.25);
+    REQUIRE(share_in_packets(fine, apart, any_hit, TraceFlavour::kAuto) > 0.1);
+  }
 }
 
 TEST_CASE("a batch that packets do not divide, or with rays that do not belong, has the same answers",

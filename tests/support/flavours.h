@@ -31,7 +31,7 @@ inline Traced trace(const DeviceBvh& tree, const Rays& rays, TraceFlavour flavou
   options.portable = portable;
   options.counters = counters;
   const Tracer tracer(context(), tree, options);
-  REQUIRE(tracer.flavour() == flavour);
+  if (flavour != TraceFlavour::kAuto) REQUIRE(tracer.flavour() == flavour);
   return {tracer.closest(rays), tracer.any(rays)};
 }
 
@@ -78,7 +78,10 @@ inline std::vector<GnHit> require_equal_flavours(const Triangles& triangles, con
   const Traced thread = trace(tree, rays, TraceFlavour::kThread);
   const Traced wide = trace(tree, rays, TraceFlavour::kWide);
   for (const bool portable : {false, true}) {
-    if (takes_packets()) require_same_answers(thread, trace(tree, rays, TraceFlavour::kPacket, portable));
+    if (takes_packets()) {
+      require_same_answers(thread, trace(tree, rays, TraceFlavour::kPacket, portable));
+      require_same_answers(thread, trace(tree, rays, TraceFlavour::kAuto, portable));
+    }
     require_same_answers(thread, trace(tree, rays, TraceFlavour::kWide, portable));
   }
   require_same_answers(thread, trace(tree, rays, TraceFlavour::kCompact));

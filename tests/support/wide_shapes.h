@@ -42,7 +42,7 @@ inline std::vector<WideShape> wide_shapes() {
     out.push_back({name, triangles, {}});
     out.push_back({name + ", one a leaf", std::move(triangles), leaves_of(1)});
   }
-  for (const std::uint32_t count : {7U, 8U, 9U, 16U, 17U, 64U, 65U}) {
+  for (const std::uint32_t count : {7U, 8U, 9U, 16U, 17U, 31U, 32U, 33U, 64U, 65U}) {
     out.push_back({"soup of " + std::to_string(count), soup(count, 80 + count), leaves_of(1)});
     out.push_back(
         {"one leaf of " + std::to_string(count), soup(count, 80 + count, 5.0F), lazy_leaves_of(255)});

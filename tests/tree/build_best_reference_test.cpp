@@ -166,9 +166,18 @@ TEST_CASE("checks of best trees still tell good from bad") {
   auto wide = gnomon::collapse_reference(good, triangles);
   REQUIRE(gnomon::check_wide(wide, triangles));
   REQUIRE_FALSE(gnomon::check_wide(wide, triangles, gnomon::Repeats::kAllowed));
-  const std::uint32_t doomed = wide.blocks[0].primitives[0];
-  for (auto& block : wide.blocks) {
-    for (std::uint32_t& p : block.primitives) p = p == doomed && doomed != GN_NONE ? (doomed + 1) % 750 : p;
+  std::uint32_t doomed = GN_NONE;
+  for (const auto& node : wide.nodes) {
+    for (const std::uint32_t link : node.links) {
+      if (link == GN_NONE || (link & GN_LEAF_LINK) == 0) continue;
+      const GnLeaf leaf = gn_leaf_at(wide.leaves.data(), link);
+      for (std::uint32_t i = 0; i < leaf.count; ++i) {
+        const std::uint32_t seat = gn_seat_in(leaf, i);
+        if (doomed == GN_NONE) doomed = gnomon::number_in(wide, seat);
+        if (gnomon::number_in(wide, seat) != doomed) continue;
+        wide.leaves[gn_seat_word(seat) + 9 * gn_seat_stride(seat)] = GN_NUMBER + (doomed + 1) % 750;
+      }
+    }
   }
   REQUIRE(gnomon::check_wide(wide, triangles, gnomon::Repeats::kAllowed));
 }

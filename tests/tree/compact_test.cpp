@@ -47,7 +47,7 @@ WideNode node_of(const std::vector<std::array<float, 6>>& boxes) {
 CompactNode compact_of(const WideNode& node, std::uint32_t* child_of) {
   gn_assign_slots(&node, child_of);
   CompactNode out;
-  gn_fill_compact_node(&node, child_of, &out);
+  gn_fill_compact_node(&node, nullptr, child_of, &out);  // no long leaves
   return out;
 }
 

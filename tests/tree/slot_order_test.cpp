@@ -22,10 +22,11 @@ double shown_below(const WideBvh& wide, std::uint32_t link) {
       if (below != GN_NONE) shown += shown_below(wide, below);
     return shown;
   }
-  for (std::uint32_t i = 0; i < gn_link_triangles(link); ++i) {
-    const gnomon::TriangleBlock& block = wide.blocks[gn_link_block(link) + i / GN_WIDTH];
+  const GnLeaf leaf = gn_leaf_at(wide.leaves.data(), link);
+  for (std::uint32_t i = 0; i < leaf.count; ++i) {
+    const GnTriangle triangle = gnomon::triangle_in(wide, gn_seat_in(leaf, i));
     const auto edge = [&](std::uint32_t corner, std::uint32_t k) {
-      return double{block.corners[3 * corner + k % 3][i % GN_WIDTH]} - block.corners[k % 3][i % GN_WIDTH];
+      return double{(corner == 1 ? triangle.v1 : triangle.v2)[k % 3]} - triangle.v0[k % 3];
     };
     for (std::uint32_t k = 0; k < 3; ++k)
       shown += 0.5 * std::fabs(edge(1, k) * edge(2, k + 1) - edge(1, k + 1) * edge(2, k));

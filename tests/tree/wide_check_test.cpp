@@ -50,10 +50,6 @@ bool names_node(std::uint32_t link) {
 bool names_leaf(std::uint32_t link) {
   return link != GN_NONE && (link & GN_LEAF_LINK) != 0;
 }
-bool names_part_of_a_block(std::uint32_t link) {
-  return names_leaf(link) && gn_link_triangles(link) % GN_WIDTH != 0;
-}
-
 // The first slot of the root that is a leaf, or a node.
 std::uint32_t slot_where(const gnomon::WideNode& node, bool (*wanted)(std::uint32_t)) {
   std::uint32_t slot = 0;
@@ -78,9 +74,21 @@ void swap_slots(gnomon::WideNode& node, std::uint32_t a, std::uint32_t b) {
   std::swap(node.links[a], node.links[b]);
 }
 
-void swap_lanes(gnomon::TriangleBlock& block, std::uint32_t a, std::uint32_t b) {
-  for (auto& corner : block.corners) std::swap(corner[a], corner[b]);
-  std::swap(block.primitives[a], block.primitives[b]);
+// A seat of the first leaf of at least `count` triangles.
+std::uint32_t seat_in_first(const WideBvh& wide, std::uint32_t i, std::uint32_t count) {
+  for (const auto& node : wide.nodes) {
+    for (const std::uint32_t link : node.links) {
+      if (!names_leaf(link)) continue;
+      const GnLeaf leaf = gn_leaf_at(wide.leaves.data(), link);
+      if (leaf.count >= count) return gn_seat_in(leaf, i);
+    }
+  }
+  FAIL("no such leaf");
+  return 0;
+}
+
+std::uint32_t& number_word(WideBvh& wide, std::uint32_t seat) {
+  return wide.leaves[gn_seat_word(seat) + 9 * gn_seat_stride(seat)];
 }
 
 }  // namespace
@@ -94,14 +102,17 @@ TEST_CASE("links out of range, doubled or lost are reported") {
   REQUIRE_THAT(link_to(0), Catch::Contains("referenced twice or is the root"));
   REQUIRE_THAT(link_to(2), Catch::Contains("referenced twice"));
   REQUIRE_THAT(link_to(1000000), Catch::Contains("links: node 1000000 of"));
-  REQUIRE_THAT(link_to(gn_leaf_link(GN_MAX_BLOCKS - 1, 8)), Catch::Contains("blocks end at"));
+  REQUIRE_THAT(link_to(gn_leaf_link(GN_MAX_PLACES - 1, 8)), Catch::Contains("a leaf begins at place"));
+  REQUIRE_THAT(link_to(gn_leaf_link(299, 8)), Catch::Contains("places end at 307 of 300"));
   REQUIRE_THAT(fault_of([](Sample& s) { s.wide.nodes.push_back(s.wide.nodes.back()); }),
                Catch::Contains("referenced twice") || Catch::Contains("never referenced") ||
                    Catch::Contains("two leaves"));
   REQUIRE_THAT(fault_of([](Sample& s) { s.wide.nodes.push_back({}); }), Catch::Contains("never referenced"));
-  REQUIRE_THAT(fault_of([](Sample& s) { s.wide.blocks.push_back(s.wide.blocks.back()); }),
+  REQUIRE_THAT(fault_of([](Sample& s) { s.wide.leaves.resize(s.wide.leaves.size() + GN_TRIANGLE_WORDS); }),
                Catch::Contains("is in no leaf"));
-  REQUIRE_THAT(fault_of([](Sample& s) { s.wide.blocks.pop_back(); }), Catch::Contains("blocks end at"));
+  REQUIRE_THAT(fault_of([](Sample& s) { s.wide.leaves.resize(s.wide.leaves.size() - GN_TRIANGLE_WORDS); }),
+               Catch::Contains("places end at"));
+  REQUIRE(fault_of([](Sample& s) { s.wide.leaves.pop_back(); }) == "sizes: part of a place");
   REQUIRE_THAT(fault_of([](Sample& s) {
                  std::uint32_t& link = link_where(s.wide, names_leaf);
                  link ^= 1U;
@@ -136,19 +147,22 @@ TEST_CASE("boxes that do not hold what is below them are reported") {
 }
 
 TEST_CASE("triangles lost, doubled or changed are reported") {
-  const auto lane_of_first = [](Sample& s) -> std::uint32_t& { return s.wide.blocks[0].primitives[0]; };
-  REQUIRE_THAT(fault_of([&](Sample& s) { lane_of_first(s) = s.wide.blocks[1].primitives[0]; }),
-               Catch::Contains("is another") || Catch::Contains("appears twice"));
-  REQUIRE_THAT(fault_of([&](Sample& s) { lane_of_first(s) = 300; }),
+  const auto number_of_first = [](Sample& s) -> std::uint32_t& {
+    return number_word(s.wide, seat_in_first(s.wide, 0, 1));
+  };
+  REQUIRE_THAT(
+      fault_of([&](Sample& s) { number_of_first(s) = number_word(s.wide, seat_in_first(s.wide, 1, 2)); }),
+      Catch::Contains("is another") || Catch::Contains("appears twice"));
+  REQUIRE_THAT(fault_of([&](Sample& s) { number_of_first(s) = GN_NUMBER + 300; }),
                Catch::Contains("triangles: number 300 of 300"));
-  REQUIRE_THAT(fault_of([&](Sample& s) { lane_of_first(s) = GN_NONE; }), Catch::Contains("of 300"));
+  REQUIRE_THAT(fault_of([&](Sample& s) { number_of_first(s) = 0; }), Catch::Contains("of 300"));
   REQUIRE_THAT(fault_of([](Sample& s) { s.triangles.push_back(s.triangles[0]); }),
                Catch::Contains("300 is in no leaf"));
   for (std::size_t k = 0; k < 9; ++k) {
     CAPTURE(k);
     REQUIRE_THAT(fault_of([&](Sample& s) {
-                   float& x = s.wide.blocks[1].corners[k][0];
-                   x = std::nextafter(x, 100.0F);
+                   const std::uint32_t seat = seat_in_first(s.wide, 9, 10);
+                   s.wide.leaves[gn_seat_word(seat) + k * gn_seat_stride(seat)] ^= 1U;
                  }),
                  Catch::Contains("is another"));
   }
@@ -156,32 +170,51 @@ TEST_CASE("triangles lost, doubled or changed are reported") {
                  std::vector<GnTriangle> doubled = s.triangles;
                  for (GnTriangle& t : doubled) t = doubled[0];
                  s.triangles = doubled;
-                 gnomon::TriangleBlock& block = s.wide.blocks[0];
-                 block.primitives[1] = block.primitives[0];
+                 number_word(s.wide, seat_in_first(s.wide, 1, 2)) =
+                     number_word(s.wide, seat_in_first(s.wide, 0, 2));
                }),
                Catch::Contains("is another") || Catch::Contains("appears twice"));
 }
 
-TEST_CASE("a triangle in two lanes is reported as doubled") {
+TEST_CASE("a triangle in two seats is reported as doubled") {
   const auto triangles = gnomon::test::repeated(gnomon::test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 5);
   WideBvh wide = gnomon::collapse_reference(gnomon::build_reference(triangles), triangles);
   REQUIRE_FALSE(gnomon::check_wide(wide, triangles));
-  wide.blocks[0].primitives[3] = wide.blocks[0].primitives[0];
+  number_word(wide, seat_in_first(wide, 3, 4)) = number_word(wide, seat_in_first(wide, 0, 4));
   REQUIRE_THAT(gnomon::check_wide(wide, triangles)->what, Catch::Contains("appears twice"));
 }
 
-TEST_CASE("places behind a leaf's last triangle, and empty slots are looked at") {
-  const auto behind = [](const std::function<void(gnomon::TriangleBlock&)>& change) {
-    return fault_of([&](Sample& s) {
-      const std::uint32_t link = link_where(s.wide, names_part_of_a_block);
-      change(s.wide.blocks[gn_link_block(link) + gn_blocks_of(gn_link_triangles(link)) - 1]);
-    });
+TEST_CASE("what begins a long leaf is looked at") {
+  const auto triangles = gnomon::test::soup(300, 31);
+  const WideBvh good = gnomon::collapse_reference(
+      gnomon::build_reference(triangles, gnomon::test::lazy_leaves_of(60)), triangles);
+  REQUIRE_FALSE(gnomon::check_wide(good, triangles));
+  std::size_t begin = 0;  // its first word
+  for (const auto& node : good.nodes) {
+    for (const std::uint32_t link : node.links)
+      if (names_leaf(link) && gn_leaf_at(good.leaves.data(), link).count >= GN_LONG_LEAF)
+        begin = std::size_t{gn_link_place(link)} * GN_TRIANGLE_WORDS;
+  }
+  REQUIRE(good.leaves[begin] >= GN_LONG_LEAF);
+  REQUIRE(good.leaves[begin] <= 60);
+  const auto fault_with = [&](std::size_t word, std::uint32_t value) {
+    WideBvh wide = good;
+    wide.leaves[begin + word] = value;
+    const auto fault = gnomon::check_wide(wide, triangles);
+    return fault ? fault->what : "none";
   };
-  REQUIRE_THAT(behind([](gnomon::TriangleBlock& b) { b.primitives[7] = 0; }), Catch::StartsWith("blocks: "));
-  REQUIRE_THAT(behind([](gnomon::TriangleBlock& b) { b.corners[4][7] = 1.0F; }),
-               Catch::StartsWith("blocks: "));
-  REQUIRE_THAT(behind([](gnomon::TriangleBlock& b) { swap_lanes(b, 0, 7); }), Catch::Contains("of 300"));
+  REQUIRE(fault_with(0, GN_LONG_LEAF - 1) == "leaves: a long one of 31 triangles");
+  REQUIRE(fault_with(0, GN_MAX_WIDE_LEAF + 1) == "leaves: a long one of 257 triangles");
+  REQUIRE(fault_with(0, 0xffffffffU) == "leaves: a long one of 4294967295 triangles");
+  REQUIRE_THAT(fault_with(0, good.leaves[begin] + 1),
+               Catch::Contains("two leaves") || Catch::Contains("places end at"));
+  REQUIRE_THAT(fault_with(0, good.leaves[begin] - 1),
+               Catch::Contains("in no leaf") || Catch::Contains("long one of 31"));
+  for (std::size_t word = 1; word < GN_TRIANGLE_WORDS; ++word)
+    REQUIRE(fault_with(word, 1) == "leaves: something behind a long one's count");
+}
 
+TEST_CASE("empty slots are looked at") {
   REQUIRE_THAT(fault_of([](Sample& s) {
                  const auto [node, slot] = empty_slot(s.wide);
                  s.wide.nodes[node].planes[0][slot] = 0.0F;
@@ -227,7 +260,7 @@ TEST_CASE("any bytes end in a verdict") {
     for (std::uint32_t c = 0; c < changes; ++c) {
       const bool node = random.below(2) == 0;
       const auto bytes = node ? std::as_writable_bytes(std::span(s.wide.nodes))
-                              : std::as_writable_bytes(std::span(s.wide.blocks));
+                              : std::as_writable_bytes(std::span(s.wide.leaves));
       const std::uint32_t word = random.below(static_cast<std::uint32_t>(bytes.size() / 4));
       const std::uint32_t value = random.below(3) == 0 ? random.below(100) : random.below(0xffffffffU);
       std::memcpy(bytes.data() + std::size_t{word} * 4, &value, 4);
@@ -237,12 +270,12 @@ TEST_CASE("any bytes end in a verdict") {
   for (int i = 0; i < 300; ++i) {
     WideBvh noise;
     noise.nodes.resize(random.below(9));
-    noise.blocks.resize(random.below(9));
+    noise.leaves.resize(std::size_t{GN_TRIANGLE_WORDS} * random.below(9));
     const auto fill = [&](std::span<std::byte> bytes) {
       for (std::byte& b : bytes) b = static_cast<std::byte>(random.below(8) == 0 ? random.below(256) : 0);
     };
     fill(std::as_writable_bytes(std::span(noise.nodes)));
-    fill(std::as_writable_bytes(std::span(noise.blocks)));
+    fill(std::as_writable_bytes(std::span(noise.leaves)));
     REQUIRE(gnomon::check_wide(noise, good.triangles));
   }
 }

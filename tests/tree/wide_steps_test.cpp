@@ -19,7 +19,7 @@ TEST_CASE("a ray by itself takes a step for each node and each block of eight tr
   one_leaf.cost_traversal = 1000.0F;
   const WideBvh wide = gnomon::collapse_reference(gnomon::build_reference(triangles, one_leaf), triangles);
   REQUIRE(wide.nodes.size() == 1);
-  REQUIRE(wide.blocks.size() == 3);
+  REQUIRE(wide.places() == 20);
   const std::vector<GnRay> rays{{{0, 0, -1}, 0, {0, 0, 1}, 100}, {{9, 9, -1}, 0, {0, 0, 1}, 100}};
   std::vector<gnomon::WideSteps> steps;
   const auto closest = gnomon::trace_wide_reference(wide, rays, false, &steps);

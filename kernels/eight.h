@@ -140,10 +140,16 @@ static inline void put_in_order(uint mask, __global const uint* links, uint* lin
   vstore8(as_uint8(__builtin_ia32_compresssi256_mask(as_int8(vload8(0, links)), (int8)0, (uchar)mask)), 0,
           links_out);
 #else
-  uint i, count = 0u;
-  for (i = 0u; i < 8u; ++i) {  // each lane's link goes to the next free place, and stays there if the lane is in mask
-    links_out[count] = links[i];
-    count += (mask >> i) & 1u;
+  // Three without asking whether they are there, since more than that are few; others are read as the last and written over.
+  // A fourth, and compilers make it one vector, which waits for itself.
+  uint i;
+  for (i = 0u; i < 3u; ++i) {
+    links_out[i] = links[lowest_bit(mask | 128u)];
+    mask &= mask - 1u;
+  }
+  while (mask != 0u) {
+    links_out[i++] = links[lowest_bit(mask)];
+    mask &= mask - 1u;
   }
 #endif
 }

@@ -85,7 +85,7 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const uin
   const float size = GN_SCENE_SIZE(nodes);
   GnPacket packet;
   GnFound found;
-  GnChoice choice = {0u, 0u, 0u};
+  GnChoice choice = {0u, 1u, 0u};  // for closest hits packets pay wherever there are any (host/notes/packets.md)
   const GnWideBatch batch = {nodes, leaves, rays, hits, 0, invalid_rays, counters, &found GN_FRAME_OF_BATCH};
   GN_FRAME_OF_PACKET(packet)
   found.count = 0u;

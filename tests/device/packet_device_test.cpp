@@ -60,6 +60,14 @@ TEST_CASE("packets give the other flavours' bits on a small soup", "[memcheck][u
   }
 }
 
+TEST_CASE("packets give the other flavours' bits on leaves of many blocks", "[unlimited]") {
+  const auto triangles = soup(1200, 221, 1.0F);
+  for (const auto& [name, rays] : bundles(4)) {
+    CAPTURE(name);
+    require_equal_flavours(triangles, rays, lazy_leaves_of(255));
+  }
+}
+
 TEST_CASE("rays that run together are traced as packets", "[unlimited]") {
   if (!context().device().is_cpu) return;
   const auto triangles = soup(2000, 203, 1.0F);

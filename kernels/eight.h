@@ -157,7 +157,7 @@ static inline void put_in_order(uint mask, __global const uint* links, uint* lin
 // Keeps of what waits, `count` of it, what is entered no further than limit, in its order; returns how much that is. Both
 // arrays may be read eight beyond count.
 static inline uint keep_near(uint* keys, uint* links, uint count, float limit) {
-  const int most = as_int(limit) | 7;
+  const int most = (limit > 0.0f ? as_int(limit) : 0) | 7;  // not fmax, which may leave -0
   uint i, kept = 0u;
 #if GN_EIGHT_AVX512
   for (i = 0u; i < count; i += 8u) {

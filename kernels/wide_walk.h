@@ -156,7 +156,7 @@ static inline void step_leaf(GnWalker* walker, const GnWideBatch* batch, int any
     return;
   }
   if (!any_hit && walker->walk.limit < limit) {
-    walker->height = keep_near(walker->keys, walker->links, walker->height, fmax(walker->walk.limit, 0.0f));
+    walker->height = keep_near(walker->keys, walker->links, walker->height, walker->walk.limit);
   }
   take_next(walker, batch, walker->height);
 }

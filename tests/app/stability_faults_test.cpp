@@ -113,7 +113,7 @@ const std::vector<Plant>& plants() {
       {"boxes taken for beyond a hit that they begin before",
        "21",
        "wide",
-       {{"eight.h", "as_int(limit) | 7;", "as_int(0.5f * limit) | 7;"}}},
+       {{"eight.h", "as_int(limit) : 0)", "as_int(0.5f * limit) : 0)"}}},
       {"lanes behind a block's last triangle", "1", "wide", {{kLeaf, " & (255u >> (8u - count));", ";"}}},
       {"a compact node's group that forgets its last node",
        "17",

@@ -1,13 +1,10 @@
 // The last passes of the fast builder: clusters are listed, and once a tree over them is known (by the balanced builder,
 // one cluster a leaf) each of its leaves is replaced by its cluster. A cluster with i inner nodes has i splits; between
-// two clusters stands one more, so that prefix sums over the clusters in leaf order tell every node's number. Not for
-// merging (ploc.cl).
+// two clusters stands one more, so that prefix sums over the clusters in leaf order tell every node's number: what lies
+// ready in a segment (ploc_parts.h) is copied there, its numbers moved along. Not for merging (ploc.cl).
+#include "group.h"
 #include "ahead.h"
 #include "shared/fast_math.h"
-#include "triangle_box.h"
-
-// Place of the lower of the cluster's bits in GnCluster::place.
-#define GN_NUMBER_MASK (2u * GN_SEGMENT - 1u)
 
 // One work-item per segment: its clusters go behind those of the segments before it, as `clusters` and as triangles that
 // have their boxes. Moved as bits: whole numbers need not survive as floats.
@@ -39,35 +36,13 @@ __kernel void measure_clusters(__global const GnCluster* clusters, __global cons
   leaves[order[i]] = i;
 }
 
-// Merges of all segments, told apart by a cluster's place.
-static inline __global const GnMerge* merge_of(__global const GnMerge* merges, uint place) {
-  return merges + (size_t)(place / (2u * GN_SEGMENT)) * GN_SEGMENT + ((place & GN_NUMBER_MASK) - GN_SEGMENT);
-}
-
-static inline uint is_triangle(uint place) { return (place & GN_NUMBER_MASK) < GN_SEGMENT; }
-
-// The place of a merge's child; right: 0 or 1.
-static inline uint child_place(uint place, uint children, uint right) {
-  return (place & ~GN_NUMBER_MASK) | ((children >> (16u * right)) & 0xffffu);
-}
-
-static inline uint inner_below(__global const GnMerge* merges, uint place) {
-  return is_triangle(place) ? 0u : merge_of(merges, place)->counts >> 16;
-}
-
-// lo, hi: a box's bits, lanes w anything.
-static inline void write_fast_node(__global GnNode* node, uint4 lo, uint4 hi, uint first, uint count) {
-  vstore4((uint4)(lo.xyz, first), 0, (__global uint*)node);
-  vstore4((uint4)(hi.xyz, count), 1, (__global uint*)node);
-}
-
 // Children of the k-th split between clusters, in the finished tree.
 static inline uint children_of_split(__global const uint* first_split, uint k) { return 2u * first_split[k + 1u] - 1u; }
 
 // A node of the tree over the clusters as the finished tree has it.
 static inline void emit_top_node(__global const GnNode* top, __global const uint* order, __global const GnCluster* clusters,
-                                 __global const GnMerge* merges, __global const uint* first_triangle,
-                                 __global const uint* first_split, __global GnNode* out) {
+                                 __global const uint* first_triangle, __global const uint* first_split,
+                                 __global GnNode* out) {
   GnNode node = *top;
   if (node.count == 0u) {
     node.first = children_of_split(first_split, (node.first - 1u) / 2u);
@@ -75,8 +50,7 @@ static inline void emit_top_node(__global const GnNode* top, __global const uint
     const uint leaf = node.first;
     const GnCluster cluster = clusters[order[leaf]];
     if (cluster.counts >> 16) {
-      const uint left = child_place(cluster.place, merge_of(merges, cluster.place)->children, 0u);
-      node.first = 1u + 2u * (first_split[leaf] + inner_below(merges, left));
+      node.first = 1u + 2u * (first_split[leaf] + (cluster.shape & 0xffffu));
       node.count = 0u;
     } else {
       node.first = first_triangle[leaf];
@@ -84,21 +58,6 @@ static inline void emit_top_node(__global const GnNode* top, __global const uint
     }
   }
   *out = node;
-}
-
-// One work-item per cluster in leaf order: the root, or the children of the split before the cluster.
-__kernel void emit_top(__global const GnNode* top, __global const uint* order, __global const GnCluster* clusters,
-                       __global const GnMerge* merges, __global const uint* first_triangle,
-                       __global const uint* first_split, __global GnNode* nodes, uint count) {
-  const uint i = (uint)get_global_id(0);
-  if (i >= count) return;
-  if (i == 0u) {
-    emit_top_node(top, order, clusters, merges, first_triangle, first_split, nodes);
-  } else {
-    __global GnNode* out = nodes + children_of_split(first_split, i - 1u);
-    emit_top_node(top + 2u * i - 1u, order, clusters, merges, first_triangle, first_split, out);
-    emit_top_node(top + 2u * i, order, clusters, merges, first_triangle, first_split, out + 1);
-  }
 }
 
 // Levels above a leaf of the tree over the clusters: splits are in leaf order, so the way down is known.
@@ -112,100 +71,83 @@ static inline uint depth_of_leaf(__global const GnNode* top, uint leaf) {
   return depth;
 }
 
-typedef struct GnAssembly {
-  __global const GnLeafTriangle* triangles;  // in the curve's order
-  __global const GnMerge* merges;
-  __global GnNode* nodes;
-  __global uint* order;
-  __global GnLeafTriangle* leaf_triangles;
-} GnAssembly;
+// One work-item per cluster in leaf order: the root, or the children of the split before the cluster. deepest: of all leaves.
+__kernel void emit_top(__global const GnNode* top, __global const uint* order, __global const GnCluster* clusters,
+                       __global const uint* first_triangle, __global const uint* first_split, __global GnNode* nodes,
+                       volatile __global uint* deepest, uint count) {
+  const uint i = (uint)get_global_id(0);
+  if (i >= count) return;
+  if (i == 0u) {
+    emit_top_node(top, order, clusters, first_triangle, first_split, nodes);
+  } else {
+    __global GnNode* out = nodes + children_of_split(first_split, i - 1u);
+    emit_top_node(top + 2u * i - 1u, order, clusters, first_triangle, first_split, out);
+    emit_top_node(top + 2u * i, order, clusters, first_triangle, first_split, out + 1);
+  }
+  // Here, where neighbours have most of the way down in common.
+  atomic_max(deepest, depth_of_leaf(top, i) + (clusters[order[i]].shape >> 16));
+}
 
-// Instead of a node's number: it stands inside a leaf, or (the root) has been written by emit_top.
-#define GN_IN_LEAF 0xfffffffeu
-#define GN_IS_WRITTEN 0xffffffffu
-
-// Copies a triangle to its place in leaf order and, where it is a leaf by itself, writes that node.
-static inline void emit_triangle(const GnAssembly* tree, uint place, uint at, uint node) {
-  __global const uint* from = (__global const uint*)(tree->triangles + (size_t)(place / (2u * GN_SEGMENT)) * GN_SEGMENT +
-                                                       (place & GN_NUMBER_MASK));
-  __global uint* out = (__global uint*)(tree->leaf_triangles + at);
-  const uint4 a = vload4(0, from), b = vload4(1, from), c = vload4(2, from);
-  tree->order[at] = a.w;
-  vstore4(a, 0, out);
-  vstore4(b, 1, out);
-  vstore4(c, 2, out);
-  if (node < GN_IN_LEAF) {
-    const GnBoxPair box = box_of_corners(as_float4(a).xyz, as_float4(b).xyz, as_float4(c).xyz);
-    write_fast_node(tree->nodes + node, as_uint4(box.lo), as_uint4(box.hi), at, 1u);
+#if GN_WGS == 1 && defined(POCL_DEVICE_ADDRESS_BITS)
+#define GN_PUT_AWAY(v, i, at) __builtin_nontemporal_store(v, (__global uint4*)(at) + (i))
+#else
+#define GN_PUT_AWAY(v, i, at) vstore4(v, i, at)
+#endif
+static inline void copy_triangles(__global const GnLeafTriangle* from, __global GnLeafTriangle* out, __global uint* order,
+                                  uint count) {
+  uint i;
+  for (i = GN_LOCAL_ID; i < count; i += GN_WGS) {
+    __global const uint* words = (__global const uint*)(from + i);
+    const uint4 a = vload4(0, words), b = vload4(1, words), c = vload4(2, words);
+    order[i] = a.w;
+    GN_PUT_AWAY(a, 0, (__global uint*)(out + i));
+    GN_PUT_AWAY(b, 1, (__global uint*)(out + i));
+    GN_PUT_AWAY(c, 2, (__global uint*)(out + i));
   }
 }
 
-// Writes what is below a cluster's root, left to right: its first triangle goes to `at` in leaf order, its first split is
-// the one numbered `split`. The number of levels below the root.
-static inline uint emit_cluster(const GnAssembly* tree, uint root, uint at, uint split) {
-  uint places[GN_CLUSTER_DEPTH + 2u], nodes[GN_CLUSTER_DEPTH + 2u], depths[GN_CLUSTER_DEPTH + 2u];
-  uint height = 1u, deepest = 0u;
-  places[0] = root;
-  nodes[0] = GN_IS_WRITTEN;
-  depths[0] = 0u;
-  while (height > 0u) {
-    const uint place = places[height - 1u], node = nodes[height - 1u], depth = depths[height - 1u];
-    deepest = max(deepest, depth);
-    height -= 1u;
-    if (is_triangle(place)) {
-      emit_triangle(tree, place, at, node);
-      split += node < GN_IN_LEAF;
-      at += 1u;
-    } else {
-      __global const uint* merge = (__global const uint*)merge_of(tree->merges, place);
-      const uint4 lo = vload4(0, merge), hi = vload4(1, merge);
-      const uint left = child_place(place, lo.w, 0u);
-      const uint inner = node == GN_IN_LEAF ? 0u : hi.w >> 16;
-      const uint own = split + inner_below(tree->merges, left);
-      const uint children = inner ? 1u + 2u * own : GN_IN_LEAF;
-      if (node < GN_IN_LEAF)
-        write_fast_node(tree->nodes + node, lo, hi, inner ? children : at, inner ? 0u : hi.w);
-      split += !inner && node < GN_IN_LEAF;  // behind each leaf but the last stands a split
-      places[height] = child_place(place, lo.w, 1u);
-      nodes[height] = inner ? children + 1u : GN_IN_LEAF;
-      depths[height] = depth + (inner ? 1u : 0u);
-      places[height + 1u] = left;
-      nodes[height + 1u] = children;
-      depths[height + 1u] = depths[height];
-      height += 2u;
-    }
+// children, triangles: what is added to an inner node's and to a leaf's first. By a product: compilers would make a branch of
+// the choice, and which it is cannot be foreseen.
+static inline void copy_nodes(__global const GnNode* from, __global GnNode* out, uint count, uint children,
+                              uint triangles) {
+  uint i;
+  for (i = GN_LOCAL_ID; i < count; i += GN_WGS) {
+    __global const uint* words = (__global const uint*)(from + i);
+    const uint4 lo = vload4(0, words), hi = vload4(1, words);
+    GN_PUT_AWAY((uint4)(lo.xyz, lo.w + children + min(hi.w, 1u) * (triangles - children)), 0, (__global uint*)(out + i));
+    GN_PUT_AWAY(hi, 1, (__global uint*)(out + i));
   }
-  return deepest;
 }
 
-// What emit_cluster reads of a segment.
-static inline void expect_segment(const GnAssembly* tree, uint segment, uint segments) {
-  if (segment >= segments) return;
-  expect_range(tree->merges + (size_t)segment * GN_SEGMENT, GN_SEGMENT * sizeof(GnMerge));
-  expect_range(tree->triangles + (size_t)segment * GN_SEGMENT, GN_SEGMENT * sizeof(GnLeafTriangle));
+// Where a cluster goes.
+static inline void expect_cluster(__global const GnNode* nodes, __global const GnLeafTriangle* leaf_triangles, uint counts,
+                                  uint triangle, uint split) {
+#if GN_WGS == 1
+  expect_range(leaf_triangles + triangle, (counts & 0xffffu) * sizeof(GnLeafTriangle));
+  expect_range(nodes + 1u + 2u * split, 2u * (counts >> 16) * sizeof(GnNode));
+#endif
 }
 
-// One work-item per `run` clusters, in the order of segments: a segment's are read together. leaves: of the clusters, in
-// the tree over them. deepest: of all leaves.
-__kernel void emit_clusters(__global const GnLeafTriangle* triangles, __global const GnMerge* merges,
-                            __global const GnCluster* clusters, __global const GnNode* top, __global const uint* leaves,
+// One work-group per segment, whose clusters are those from first[segment] on. leaves: of the clusters, in the tree over
+// them.
+__kernel void emit_clusters(__global const GnLeafTriangle* sorted, __global const GnNode* parts,
+                            __global const GnCluster* clusters, __global const uint* first, __global const uint* leaves,
                             __global const uint* first_triangle, __global const uint* first_split,
-                            __global GnNode* nodes, __global uint* order, __global GnLeafTriangle* leaf_triangles,
-                            volatile __global uint* deepest, uint count, uint segments, uint run) {
-  const GnAssembly tree = {triangles, merges, nodes, order, leaf_triangles};
-  const uint begin = min(count, (uint)get_global_id(0) * run);
-  const uint end = begin + min(count - begin, run);
-  uint i, depth = 0u, segment = GN_NONE;
-  for (i = begin; i < end; ++i) {
-    const uint place = clusters[i].place, leaf = leaves[i];
-    uint below;
-    if (run > 1u && place / (2u * GN_SEGMENT) != segment) {
-      if (segment == GN_NONE) expect_segment(&tree, place / (2u * GN_SEGMENT), segments);
-      segment = place / (2u * GN_SEGMENT);
-      expect_segment(&tree, segment + 1u, segments);
+                            __global GnNode* nodes, __global uint* order, __global GnLeafTriangle* leaf_triangles) {
+  const uint segment = (uint)get_group_id(0), begin = first[segment], end = first[segment + 1u];
+  uint triangles_before = 0u, splits_before = 0u, i;
+  sorted += (size_t)segment * GN_SEGMENT;
+  parts += (size_t)segment * GN_SEGMENT_NODES;
+  for (i = 0u; i < GN_SEGMENT_CLUSTERS; ++i) {
+    if (i < end - begin) {
+      const uint leaf = leaves[begin + i], counts = clusters[begin + i].counts, inner = counts >> 16;
+      const uint triangle = first_triangle[leaf], split = first_split[leaf];
+      const uint next = min(begin + i + 1u, end - 1u);
+      copy_triangles(sorted + triangles_before, leaf_triangles + triangle, order + triangle, counts & 0xffffu);
+      copy_nodes(parts + 2u * splits_before, nodes + 1u + 2u * split, 2u * inner, 1u + 2u * (split - splits_before),
+                 triangle - triangles_before);
+      triangles_before += counts & 0xffffu;
+      splits_before += inner;
     }
-    below = emit_cluster(&tree, place, first_triangle[leaf], first_split[leaf]);
-    depth = max(depth, below + depth_of_leaf(top, leaf));
   }
-  if (begin < end) atomic_max(deepest, depth);
 }

@@ -60,6 +60,22 @@ static inline uint lanes_above(float8 a, float8 b) {
 #endif
 }
 
+// Lanes where a is above b and c above d, and where either is: one comparison's bits less than two of the above.
+static inline uint lanes_both_above(float8 a, float8 b, float8 c, float8 d) {
+#if GN_EIGHT_AVX512
+  return lanes_above(a, b) & lanes_above(c, d);
+#else
+  return bits_of_lanes((a > b) & (c > d));
+#endif
+}
+static inline uint lanes_either_above(float8 a, float8 b, float8 c, float8 d) {
+#if GN_EIGHT_AVX512
+  return lanes_above(a, b) | lanes_above(c, d);
+#else
+  return bits_of_lanes((a > b) | (c > d));
+#endif
+}
+
 // One stage of a sorting network: lanes where `upper` is set keep the larger of themselves and their partner.
 #define GN_EXCHANGE8(keys, partner, upper)                              \
   {                                                                     \
@@ -134,25 +150,14 @@ static inline void put_lanes(uint mask, uint base, uint* places_out) {
   }
 }
 
-// Writes the links of the lanes in mask, lowest lane first, to links_out, which must have room for eight.
-static inline void put_in_order(uint mask, __global const uint* links, uint* links_out) {
 #if GN_EIGHT_AVX512
+// Writes the links of the lanes in mask, lowest lane first, to links_out, which must have room for eight. Only where it is an
+// instruction: wide_walk.h does without elsewhere.
+static inline void put_in_order(uint mask, __global const uint* links, uint* links_out) {
   vstore8(as_uint8(__builtin_ia32_compresssi256_mask(as_int8(vload8(0, links)), (int8)0, (uchar)mask)), 0,
           links_out);
-#else
-  // Three without asking whether they are there, since more than that are few; others are read as the last and written over.
-  // A fourth, and compilers make it one vector, which waits for itself.
-  uint i;
-  for (i = 0u; i < 3u; ++i) {
-    links_out[i] = links[lowest_bit(mask | 128u)];
-    mask &= mask - 1u;
-  }
-  while (mask != 0u) {
-    links_out[i++] = links[lowest_bit(mask)];
-    mask &= mask - 1u;
-  }
-#endif
 }
+#endif
 
 // Keeps of what waits, `count` of it, what is entered no further than limit, in its order; returns how much that is. Both
 // arrays may be read eight beyond count.

@@ -40,8 +40,7 @@ typedef struct GnChoice {
 #define GN_PACKET_NODE 1620u
 #define GN_PACKET_BOX 42u
 #define GN_PACKET_TRIANGLE 135u
-#define GN_ALONE_CLOSEST 1230u
-#define GN_ALONE_ANY 630u
+#define GN_ALONE_RAY 630u
 #define GN_ALONE_NODE 51u
 #define GN_ALONE_BLOCK 206u
 
@@ -56,12 +55,13 @@ static inline void begin_choice(GnPacketWork* work, GnChoice* choice) {
   choice->failures = 0u;
 }
 
-static inline void choose(const GnPacketWork* work, uint rays, GnChoice* choice, int any_hit) {
+// After it, for any hit: closest hits have no prices, since their packets pay wherever there are any.
+static inline void choose(const GnPacketWork* work, uint rays, GnChoice* choice) {
   if (choice->known) return;
   const ulong together = (ulong)rays * GN_PACKET_RAY + (ulong)work->nodes * GN_PACKET_NODE +
                          (ulong)work->boxes * GN_PACKET_BOX + (ulong)work->triangles * GN_PACKET_TRIANGLE;
-  const ulong alone = (ulong)rays * (any_hit ? GN_ALONE_ANY : GN_ALONE_CLOSEST) +
-                      (ulong)(rays + work->alone_nodes) * GN_ALONE_NODE + (ulong)work->alone_blocks * GN_ALONE_BLOCK;
+  const ulong alone = (ulong)rays * GN_ALONE_RAY + (ulong)(rays + work->alone_nodes) * GN_ALONE_NODE +
+                      (ulong)work->alone_blocks * GN_ALONE_BLOCK;
   choice->known = 1u;
   choice->alone = alone < together;
 }
@@ -78,7 +78,7 @@ static inline uint rays_to_pass(GnChoice* choice) {
 #define GN_WORK(p, what, more)
 #define GN_MEASURED(p) 0u
 static inline void begin_choice(GnPacketWork* work, GnChoice* choice) {}
-static inline void choose(const GnPacketWork* work, uint rays, GnChoice* choice, int any_hit) {}
+static inline void choose(const GnPacketWork* work, uint rays, GnChoice* choice) {}
 static inline uint rays_to_pass(GnChoice* choice) { return 16u; }
 
 #endif

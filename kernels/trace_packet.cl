@@ -96,7 +96,6 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const uin
     if (groups == 0u) break;
     begin_choice(&packet.work, &choice);
     walk_packet(&packet, nodes, leaves, rays, 0);
-    choose(&packet.work, 16u * groups, &choice, 0);
     write_packet(&packet, &found, leaves, rays, hits);
     store_packet_counters(&packet, counters);
     index = start + 16u * groups;
@@ -122,7 +121,7 @@ __kernel void trace_any(__global const GnWideNode* nodes, __global const uint* l
     if (groups == 0u) break;
     begin_choice(&packet.work, &choice);
     walk_packet(&packet, nodes, leaves, rays, 1);
-    choose(&packet.work, 16u * groups, &choice, 1);
+    choose(&packet.work, 16u * groups, &choice);
     for (i = 0u; i < 16u * groups; ++i) occluded[start + i] = (packet.found[i >> 4] >> (i & 15u)) & 1u;
     store_packet_counters(&packet, counters);
     index = start + 16u * groups;

@@ -191,9 +191,9 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
   const float8 q = GN_MAX8(px, py) + GN_EDGE_SHIFT * z;
   const float8 bound = GN_FAST ? (float8)0.0f : GN_EDGE_ERROR_8 * (8.0f * q * (q + z)) + GN_EDGE_UNDERFLOW;
   const float8 largest = GN_MAX8(GN_MAX8(u, v), w), smallest = GN_MIN8(GN_MIN8(u, v), w);
-  uint met = ~(lanes_above(largest, bound) & lanes_above(-bound, smallest)) & (255u >> (8u - count));
+  uint met = ~lanes_both_above(largest, bound, -bound, smallest) & (255u >> (8u - count));
   if (met != 0u) {
-    const uint inside = lanes_above(smallest, bound) | lanes_above(-bound, largest);
+    const uint inside = lanes_either_above(smallest, bound, -bound, largest);
     const float8 share = 1.0f / (u + v + w);
     const float8 spread = GN_MAX8(GN_MAX8(az, bz), cz) - GN_MIN8(GN_MIN8(az, bz), cz);
     const float8 inverse = (float8)frame->inverse[kz];

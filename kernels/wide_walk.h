@@ -129,6 +129,19 @@ static inline void take_next(GnWalker* walker, const GnWideBatch* batch, uint he
   send_for(batch, walker->current);
 }
 
+#if !GN_EIGHT_AVX512
+// Any hit without an instruction for compaction: nodes wait, each with the slots met that have not been looked at in place
+// of a key. At the bottom lies the root with one slot, and whatever that is stands for GN_NONE.
+static inline void take_last_met(GnWalker* walker, const GnWideBatch* batch) {
+  const uint at = walker->height - 1u, slots = walker->keys[at], slot = highest_bit(slots);
+  const uint link = batch->nodes[walker->links[at]].links[slot], rest = slots & ~(1u << slot);
+  walker->keys[at] = rest;
+  walker->height -= rest == 0u;
+  walker->current = at == 0u ? GN_NONE : link;
+  send_for(batch, walker->current);
+}
+#endif
+
 // All children met go onto the stack and the nearest, or for any hit the last, comes off again: how many they are decides
 // no branch.
 static inline void step_node(GnWalker* walker, const GnWideBatch* batch, int any_hit) {
@@ -140,7 +153,15 @@ static inline void step_node(GnWalker* walker, const GnWideBatch* batch, int any
   const uint count = popcount(met);
   GN_COUNT_BOXES(node);
   if (any_hit) {
+#if GN_EIGHT_AVX512
     put_in_order(met, node->links, walker->links + height);
+#else
+    walker->links[height] = walker->current;
+    walker->keys[height] = met;
+    walker->height = height + (met != 0u);
+    take_last_met(walker, batch);
+    return;
+#endif
   } else {
     put_by_distance(GN_MAX8(entries, (float8)0.0f), met, count, node->links, walker->keys + height,
                     walker->links + height);
@@ -158,6 +179,12 @@ static inline void step_leaf(GnWalker* walker, const GnWideBatch* batch, int any
   if (!any_hit && walker->walk.limit < limit) {
     walker->height = keep_near(walker->keys, walker->links, walker->height, walker->walk.limit);
   }
+#if !GN_EIGHT_AVX512
+  if (any_hit) {
+    take_last_met(walker, batch);
+    return;
+  }
+#endif
   take_next(walker, batch, walker->height);
 }
 
@@ -185,8 +212,8 @@ static inline uint take_up(GnWalker* walker, const GnWideBatch* batch, uint inde
   walker->index = index;
   walker->current = 0u;
   walker->height = 1u;
-  walker->links[0] = GN_NONE;
-  walker->keys[0] = 0u;
+  walker->links[0] = any_hit && !GN_EIGHT_AVX512 ? 0u : GN_NONE;
+  walker->keys[0] = any_hit && !GN_EIGHT_AVX512 ? 1u : 0u;
   if (gn_ray_is_valid(&ray)) {
     GN_TAKE_RAY(&walker->ray, &ray, batch);
     return 1u;

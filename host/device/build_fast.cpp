@@ -25,11 +25,14 @@ struct FastPlan {
   std::uint32_t count = 0;
   std::uint32_t work_group_size = 0;
   std::uint32_t item_group_size = 0;
-  std::uint32_t cluster_run = 0;  // clusters one work-item writes
   SortPlan sort;
   [[nodiscard]] std::uint32_t segments() const { return (count + GN_SEGMENT - 1) / GN_SEGMENT; }
   [[nodiscard]] std::uint64_t most_clusters() const {
     return std::min<std::uint64_t>(count, std::uint64_t{segments()} * GN_SEGMENT_CLUSTERS);
+  }
+  // In memory that all work-groups share; the serial flavour's are in its own.
+  [[nodiscard]] std::uint64_t merges() const {
+    return work_group_size == 1 ? 1 : std::uint64_t{segments()} * GN_SEGMENT;
   }
   [[nodiscard]] std::string program_options() const {
     return "-DGN_WGS=" + std::to_string(work_group_size) + " -DGN_KIND=0u";
@@ -59,8 +62,6 @@ FastPlan plan_fast(const cl::DeviceInfo& device, std::uint64_t count, const Buil
   plan.count = general.count;
   plan.work_group_size = general.work_group_size;
   plan.item_group_size = general.item_group_size;
-  // Several save a CPU the start of a group each; devices that end loops are given as little as can be.
-  plan.cluster_run = general.work_group_size == 1 && device.loop_limit == 0 ? 64 : 1;
   plan.sort = plan_sort(device, general.count, general.work_group_size, options.chunk_size);
   heed_loop_limit(plan, device);
   return plan;
@@ -76,7 +77,8 @@ std::vector<BufferNeed> own_buffers(const FastPlan& plan) {
       {"spare_keys", n * sizeof(GnMortonKey), true},
       {"digits", plan.sort.table_bytes(), true},
       {"sorted_triangles", n * sizeof(GnLeafTriangle), true},
-      {"merges", std::uint64_t{plan.segments()} * GN_SEGMENT * sizeof(GnMerge), true},
+      {"merges", plan.merges() * sizeof(GnMerge), true},
+      {"parts", std::uint64_t{plan.segments()} * GN_SEGMENT_NODES * sizeof(GnNode), true},
       {"remaining", std::uint64_t{plan.segments()} * GN_SEGMENT_CLUSTERS * sizeof(GnCluster), true},
       {"first_clusters", (plan.segments() + 1ULL) * sizeof(std::uint32_t), true},
       {"clusters", clusters * sizeof(GnCluster), true},
@@ -182,16 +184,19 @@ class FastBuilder {
   void merge() {
     const std::uint32_t segments = plan_.segments();
     sorted_ = allocate("sorted_triangles");
-    merges_ = allocate("merges");
+    parts_ = allocate("parts");
+    first_cluster_ = allocate("first_clusters");
+    const cl::Buffer merges = allocate("merges");
     const cl::Buffer remaining = allocate("remaining");
-    const cl::Buffer first = allocate("first_clusters");
-    launch_groups("merge", "merge_segments", segments, triangles_, keys_, sorted_, merges_, remaining, first,
-                  plan_.count, options_.cost_traversal, options_.cost_triangle, options_.max_leaf_size);
-    scan(first, segments);
-    cluster_count_ = context_.download_values<std::uint32_t>(first, 1, segments).front();
+    launch_groups("merge", "merge_segments", segments, triangles_, keys_, merges, sorted_, parts_, remaining,
+                  first_cluster_, plan_.count, options_.cost_traversal, options_.cost_triangle,
+                  options_.max_leaf_size);
+    scan(first_cluster_, segments);
+    cluster_count_ = context_.download_values<std::uint32_t>(first_cluster_, 1, segments).front();
     clusters_ = context_.create_buffer("clusters", cluster_count_ * sizeof(GnCluster));
     stand_ins_ = context_.create_buffer("stand_ins", cluster_count_ * sizeof(Triangle));
-    launch_items("assemble", "list_clusters", segments, remaining, first, clusters_, stand_ins_, segments);
+    launch_items("assemble", "list_clusters", segments, remaining, first_cluster_, clusters_, stand_ins_,
+                 segments);
   }
 
   DeviceBvh assemble(const DeviceBvh& top) {
@@ -211,15 +216,12 @@ class FastBuilder {
     tree.nodes = context_.create_buffer("nodes", tree.node_count * sizeof(Node));
     tree.order = allocate("order");
     tree.leaf_triangles = allocate("leaf_triangles");
-    launch_items("assemble", "emit_top", m, top.nodes, top.order, clusters_, merges_, first_triangle,
-                 first_split, tree.nodes, m);
     const cl::Buffer deepest = context_.create_buffer("deepest", sizeof(std::uint32_t));
     context_.fill(deepest, 0);
-    const std::size_t items = (m + plan_.cluster_run - 1) / plan_.cluster_run;
-    const std::size_t local = plan_.cluster_run > 1 ? 1 : plan_.item_group_size;
-    launch("assemble", "emit_clusters", (items + local - 1) / local * local, local, sorted_, merges_,
-           clusters_, top.nodes, leaves, first_triangle, first_split, tree.nodes, tree.order,
-           tree.leaf_triangles, deepest, m, plan_.segments(), plan_.cluster_run);
+    launch_items("assemble", "emit_top", m, top.nodes, top.order, clusters_, first_triangle, first_split,
+                 tree.nodes, deepest, m);
+    launch_groups("assemble", "emit_clusters", plan_.segments(), sorted_, parts_, clusters_, first_cluster_, leaves,
+                  first_triangle, first_split, tree.nodes, tree.order, tree.leaf_triangles);
     tree.max_depth = context_.download_values<std::uint32_t>(deepest, 1).front();
     return tree;
   }
@@ -239,7 +241,7 @@ class FastBuilder {
   std::map<std::string, std::uint64_t> sizes_;
   cl::StageTimes times_;
   std::uint32_t cluster_count_ = 0;
-  cl::Buffer keys_, spare_keys_, sorted_, merges_, clusters_, stand_ins_;
+  cl::Buffer keys_, spare_keys_, sorted_, parts_, first_cluster_, clusters_, stand_ins_;
 };
 
 }  // namespace

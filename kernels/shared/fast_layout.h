@@ -14,9 +14,11 @@
 // How far along the curve a cluster looks for a partner, each way.
 #define GN_NEIGHBOURS 7
 // After so many rounds neighbours merge whatever they cost: a cluster is then no deeper than these rounds and one for
-// each halving.
+// each halving, GN_MOST_ROUNDS.
 #define GN_FREE_ROUNDS 24u
-#define GN_CLUSTER_DEPTH (GN_FREE_ROUNDS + 9u)
+#define GN_MOST_ROUNDS (GN_FREE_ROUNDS + 9u)
+// Nodes below a segment's clusters are fewer than these.
+#define GN_SEGMENT_NODES (2u * GN_SEGMENT)
 // Levels of the tree over the clusters that are divided by cost; below them counts are halved.
 #define GN_CLUSTERS_BY_COST 30u
 
@@ -48,11 +50,12 @@ typedef struct GnMerge {
 } GnMerge;
 GN_SIZE_IS(GnMerge, 32);
 
-// A cluster that stays when its segment's merging ends: a leaf of the tree above. place: GN_SEGMENT * 2 * the segment +
-// its number there. counts as a merge's.
+// A cluster that stays when its segment's merging ends: a leaf of the tree above. shape: inner nodes below its left child,
+// and in the upper half the levels below its root. counts as a merge's. What is below its root lies ready in its segment:
+// triangles in leaf order and pairs of nodes in the order of their splits, both behind those of the clusters before it.
 typedef struct GnCluster {
   gn_f32 lo[3];
-  gn_u32 place;
+  gn_u32 shape;
   gn_f32 hi[3];
   gn_u32 counts;
 } GnCluster;

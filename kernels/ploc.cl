@@ -7,7 +7,7 @@
 #include "ploc_parts.h"
 
 // Triangles that are sent for before they are needed.
-#define GN_AHEAD 16u
+#define GN_AHEAD 32u
 
 // One cluster on its way from place to place: its box, what it counts and costs (gn_merge_counts), its number and in the upper
 // half how many levels are below its root.

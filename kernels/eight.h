@@ -84,6 +84,14 @@ static inline uint lanes_either_above(float8 a, float8 b, float8 c, float8 d) {
   }
 #define GN_SIGNS8(a, b, c, d, e, f, g, h) ((int8)(-(a), -(b), -(c), -(d), -(e), -(f), -(g), -(h)))
 
+// The same for keys of which no two are equal, with what belongs to them.
+#define GN_EXCHANGE_BOTH8(keys, links, partner, upper)                  \
+  {                                                                     \
+    const int8 other = keys.partner, takes = ~((other > keys) ^ (upper)); \
+    keys = takes ? other : keys;                                        \
+    links = takes ? links.partner : links;                              \
+  }
+
 // Ascending order of lanes 0 to 3; lanes 4 to 7 are undefined.
 static inline int8 sort_first_four(int8 keys) {
   GN_EXCHANGE8(keys, keys.s10325476, GN_SIGNS8(0, 1, 1, 0, 0, 1, 1, 0));
@@ -120,9 +128,16 @@ static inline void put_by_distance(float8 entries, uint mask, uint count, __glob
 #else
   // Farthest first by their complements, which are as many, ascending; those that are not in the mask come last.
   const int8 chosen = ((int8)((int)mask) & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
-  uint i;
-  vstore8(as_uint8(~sort_eight(chosen ? ~entry_keys(entries) : (int8)INT_MAX)), 0, keys_out);
-  for (i = 0u; i < 8u; ++i) links_out[i] = links[keys_out[i] & 7u];  // all eight: what is behind them is written over
+  int8 keys = chosen ? ~entry_keys(entries) : (int8)INT_MAX;
+  uint8 sorted = vload8(0, links);
+  GN_EXCHANGE_BOTH8(keys, sorted, s10325476, GN_SIGNS8(0, 1, 1, 0, 0, 1, 1, 0));
+  GN_EXCHANGE_BOTH8(keys, sorted, s23016745, GN_SIGNS8(0, 0, 1, 1, 1, 1, 0, 0));
+  GN_EXCHANGE_BOTH8(keys, sorted, s10325476, GN_SIGNS8(0, 1, 0, 1, 1, 0, 1, 0));
+  GN_EXCHANGE_BOTH8(keys, sorted, s45670123, GN_SIGNS8(0, 0, 0, 0, 1, 1, 1, 1));
+  GN_EXCHANGE_BOTH8(keys, sorted, s23016745, GN_SIGNS8(0, 0, 1, 1, 0, 0, 1, 1));
+  GN_EXCHANGE_BOTH8(keys, sorted, s10325476, GN_SIGNS8(0, 1, 0, 1, 0, 1, 0, 1));
+  vstore8(as_uint8(~keys), 0, keys_out);
+  vstore8(sorted, 0, links_out);
 #endif
 }
 

@@ -13,6 +13,13 @@ typedef struct GnFound {
   uint count;
 } GnFound;
 
+// Before a loop over loads from anywhere: vectors of such loads are an instruction, but a slow one.
+#if defined(__clang__)
+#define GN_ONE_BY_ONE _Pragma("clang loop vectorize(disable)")
+#else
+#define GN_ONE_BY_ONE
+#endif
+
 #if GN_HAS_FP64 && !GN_FAST
 
 // Of three vectors that of axis k, lane by lane.
@@ -61,11 +68,13 @@ static GN_OUT_OF_LINE void settle_found(GnFound* found, __global const uint* lea
   long doubtful[8];
   double8 r[9], d[3];
   uint i, k;
+  GN_ONE_BY_ONE
   for (i = 0u; i < 8u; ++i) {
     const uint from = i < found->count ? i : 0u;
     __global const float* triangle = (__global const float*)leaves + gn_seat_word(found->seat[from]);
     __global const float* ray = (__global const float*)(rays + found->ray[from]);
     const uint stride = gn_seat_stride(found->seat[from]);
+    GN_ONE_BY_ONE
     for (k = 0u; k < 9u; ++k) corner[8u * k + i] = triangle[k * stride];
     for (k = 0u; k < 3u; ++k) {
       line[8u * k + i] = ray[k];

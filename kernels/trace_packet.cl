@@ -95,6 +95,7 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const uin
     trace_singly(&batch, index, start, 0);
     if (groups == 0u) break;
     begin_choice(&packet.work, &choice);
+    expect_range(rays + start + 16u * groups, GN_PACKET * sizeof(float8));  // those of the next
     walk_packet(&packet, nodes, leaves, rays, 0);
     write_packet(&packet, &found, leaves, rays, hits);
     store_packet_counters(&packet, counters);
@@ -120,6 +121,7 @@ __kernel void trace_any(__global const GnWideNode* nodes, __global const uint* l
     trace_singly(&batch, index, start, 1);
     if (groups == 0u) break;
     begin_choice(&packet.work, &choice);
+    expect_range(rays + start + 16u * groups, GN_PACKET * sizeof(float8));  // those of the next
     walk_packet(&packet, nodes, leaves, rays, 1);
     choose(&packet.work, 16u * groups, &choice);
     for (i = 0u; i < 16u * groups; ++i) occluded[start + i] = (packet.found[i >> 4] >> (i & 15u)) & 1u;

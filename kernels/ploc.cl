@@ -104,7 +104,7 @@ static inline void fence(const GnClusters* clusters, uint count) {
 // Partners of a round in which clusters no longer choose: every other one's is the next.
 static inline void pair_neighbours(const GnClusters* clusters, uint count) {
   uint i;
-  for (i = GN_LOCAL_ID; i < count; i += GN_WGS) plane_of(clusters, GN_CHOSEN)[i] = (i ^ 1u) < count ? i ^ 1u : i;
+  GN_FOR_UP_TO(i, count, GN_SEGMENT) plane_of(clusters, GN_CHOSEN)[i] = (i ^ 1u) < count ? i ^ 1u : i;
 }
 
 #if GN_WGS == 1
@@ -115,7 +115,7 @@ static inline void end_round(const GnClusters* clusters, GnRound* round, const G
                              uint* height, uint* merged) {
   uint i;
   find_joins(clusters, *height, round);
-  for (i = 0u; i < round->joins; ++i) {
+  GN_FOR_UP_TO(i, round->joins, GN_SEGMENT / 2u) {
     const uint left = round->lefts[i], right = round->rights[i], merge = *merged + i;
     const GnMoving joined = join(clusters, left, right, GN_SEGMENT + merge, rule);
     store_merge(merges, merge, clusters, left, right, joined);
@@ -198,7 +198,7 @@ __kernel void merge_segments(__global const float* triangles, __global const uin
   __local uint sums[GN_WGS], rounds[GN_MOST_ROUNDS + 1u];
   const GnMerged merges = {all_merges + (size_t)get_group_id(0) * GN_SEGMENT, left_counts};
 #else
-  __local GnMerge records[GN_SEGMENT];
+  GnMerge records[GN_SEGMENT];
   const GnMerged merges = {records, left_counts};
   GnRound joins;
 #endif
@@ -230,6 +230,7 @@ __kernel void merge_segments(__global const float* triangles, __global const uin
     end_round(&clusters, &joins, &merges, rule, &height, &merged);
 #else
     if (GN_LOCAL_ID == 0u) rounds[round] = merged;
+    GN_GROUP_BARRIER();  // which nobody waits for, but PoCL 3.1 loses what was written without it
     end_round(&clusters, sums, &merges, rule, &height, &merged);
 #endif
     round += 1u;
@@ -240,7 +241,10 @@ __kernel void merge_segments(__global const float* triangles, __global const uin
   if (GN_LOCAL_ID == 0u) remaining_counts[segment] = height;
   // From the roots down: rounds backwards, since merges of one round are not below each other.
 #if GN_WGS == 1
-  for (; merged > 0u; --merged) place_children(planes, &merges, merged - 1u, parts);
+  {
+    uint i;
+    GN_FOR_UP_TO(i, merged, GN_SEGMENT) place_children(planes, &merges, merged - 1u - i, parts);
+  }
 #else
   if (GN_LOCAL_ID == 0u) rounds[round] = merged;
   GN_GROUP_BARRIER();

@@ -10,6 +10,16 @@
 
 #define GN_CLUSTERS_AT_ONCE 16u
 
+// What a work-item does of a loop up to a bound that a loop before has changed, after whose first turn Mesa 22.3 leaves it:
+// elsewhere than in PoCL it is counted to a constant.
+#ifdef POCL_DEVICE_ADDRESS_BITS
+#define GN_FOR_UP_TO(i, bound, most) for (i = GN_LOCAL_ID; i < (bound); i += GN_WGS)
+#else
+#define GN_FOR_UP_TO(i, bound, most)                 \
+  for (i = GN_LOCAL_ID; i < (most); i += GN_WGS)     \
+    if (i < (bound))
+#endif
+
 // Places before the first cluster and behind the last that neighbours may be looked for in; behind, those of sixteen
 // clusters of which the first is the last.
 #define GN_BEFORE 8u
@@ -91,26 +101,36 @@ static inline void choose_partners(const GnClusters* clusters, uint count) {
 
 #else
 
+static inline uint key_at(__local const float* at, int away, uint distance, uint lower) {
+  const float lo[3] = {gn_min(at[0], at[away]), gn_min(at[GN_PLACES], at[(int)GN_PLACES + away]),
+                       gn_min(at[2u * GN_PLACES], at[(int)(2u * GN_PLACES) + away])};
+  const float hi[3] = {gn_max(at[3u * GN_PLACES], at[(int)(3u * GN_PLACES) + away]),
+                       gn_max(at[4u * GN_PLACES], at[(int)(4u * GN_PLACES) + away]),
+                       gn_max(at[5u * GN_PLACES], at[(int)(5u * GN_PLACES) + away])};
+  return gn_pair_key(gn_surface_measure(lo, hi), distance, lower);
+}
+
+#define GN_BOTH_WAYS(distance)                                                                 \
+  best = min(best, min(key_at(at, distance, distance##u, place),                               \
+                       key_at(at, -distance, distance##u, place - distance##u)));
+
+// Without a loop: some devices end kernels whose loops take many turns.
 static inline uint nearest_of(const GnClusters* clusters, uint place) {
   __local const float* at = (__local const float*)clusters->planes + GN_BEFORE + place;
-  uint best = GN_NONE, distance, side, k;
-  for (distance = 1u; distance <= GN_NEIGHBOURS; ++distance) {
-    for (side = 0u; side < 2u; ++side) {
-      const int away = side ? (int)distance : -(int)distance;
-      float lo[3], hi[3];
-      for (k = 0u; k < 3u; ++k) {
-        lo[k] = gn_min(at[k * GN_PLACES], at[(int)(k * GN_PLACES) + away]);
-        hi[k] = gn_max(at[(3u + k) * GN_PLACES], at[(int)((3u + k) * GN_PLACES) + away]);
-      }
-      best = min(best, gn_pair_key(gn_surface_measure(lo, hi), distance, side ? place : place - distance));
-    }
-  }
+  uint best = GN_NONE;
+  GN_BOTH_WAYS(1)
+  GN_BOTH_WAYS(2)
+  GN_BOTH_WAYS(3)
+  GN_BOTH_WAYS(4)
+  GN_BOTH_WAYS(5)
+  GN_BOTH_WAYS(6)
+  GN_BOTH_WAYS(7)
   return best;
 }
 
 static inline void choose_partners(const GnClusters* clusters, uint count) {
   uint i;
-  for (i = GN_LOCAL_ID; i < count; i += GN_WGS)
+  GN_FOR_UP_TO(i, count, GN_SEGMENT)
     plane_of(clusters, GN_CHOSEN)[i] = gn_pair_partner(nearest_of(clusters, i), i);
 }
 
@@ -183,13 +203,20 @@ static inline void find_joins(const GnClusters* clusters, uint count, GnRound* r
   }
 }
 
+// Planes one by one without a loop: some devices end kernels whose loops take many turns.
 static inline uint close_ranks(const GnClusters* clusters, const GnRound* round, uint count) {
-  uint kept = 0u, i, k;
+  __local uint* boxes = plane_of(clusters, 0u);
+  uint kept = 0u, i;
   for (i = 0u; i < count; ++i) {
-    for (k = 0u; k < GN_STAYING; ++k) {
-      __local uint* plane = plane_of(clusters, k);
-      plane[kept] = plane[i];
-    }
+    boxes[kept] = boxes[i];
+    boxes[GN_PLACES + kept] = boxes[GN_PLACES + i];
+    boxes[2u * GN_PLACES + kept] = boxes[2u * GN_PLACES + i];
+    boxes[3u * GN_PLACES + kept] = boxes[3u * GN_PLACES + i];
+    boxes[4u * GN_PLACES + kept] = boxes[4u * GN_PLACES + i];
+    boxes[5u * GN_PLACES + kept] = boxes[5u * GN_PLACES + i];
+    boxes[GN_COSTS * GN_PLACES + kept] = boxes[GN_COSTS * GN_PLACES + i];
+    boxes[GN_COUNTS * GN_PLACES + kept] = boxes[GN_COUNTS * GN_PLACES + i];
+    boxes[GN_NUMBERS * GN_PLACES + kept] = boxes[GN_NUMBERS * GN_PLACES + i];
     kept += (uint)(round->stays[i / GN_CLUSTERS_AT_ONCE] >> (i % GN_CLUSTERS_AT_ONCE)) & 1u;
   }
   return kept;

@@ -7,9 +7,9 @@
 #include "ploc_lanes.h"
 #include "triangle_box.h"
 
-// Merges of a segment are the group's own where one work-item does it all and need not share local memory with others.
+// Where merges of a segment are kept: local memory has no room for them beside the clusters.
 #if GN_WGS == 1
-#define GN_MERGES __local
+#define GN_MERGES __private
 #else
 #define GN_MERGES __global
 #endif

@@ -39,9 +39,9 @@ struct FastPlan {
   }
 };
 
-// Turns that one work-item of merge_segments takes at most: all rounds' clusters, twice, with what a
-// cooperative group's items do together.
-constexpr std::uint32_t kTurnsPerCluster = 32;
+// Turns that one work-item of merge_segments takes at most: those that count are the serial flavour's, four
+// loops over the clusters a round, where rounds merge two each until they need not choose.
+constexpr std::uint32_t kTurnsPerCluster = 4 * GN_FREE_ROUNDS;
 
 void heed_loop_limit(const FastPlan& plan, const cl::DeviceInfo& device) {
   const std::uint32_t limit = device.loop_limit;
@@ -220,8 +220,8 @@ class FastBuilder {
     context_.fill(deepest, 0);
     launch_items("assemble", "emit_top", m, top.nodes, top.order, clusters_, first_triangle, first_split,
                  tree.nodes, deepest, m);
-    launch_groups("assemble", "emit_clusters", plan_.segments(), sorted_, parts_, clusters_, first_cluster_, leaves,
-                  first_triangle, first_split, tree.nodes, tree.order, tree.leaf_triangles);
+    launch_groups("assemble", "emit_clusters", plan_.segments(), sorted_, parts_, clusters_, first_cluster_,
+                  leaves, first_triangle, first_split, tree.nodes, tree.order, tree.leaf_triangles);
     tree.max_depth = context_.download_values<std::uint32_t>(deepest, 1).front();
     return tree;
   }

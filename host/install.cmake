@@ -10,7 +10,7 @@ set(public_headers
   areas/ray_measure.h areas/projection.h areas/cone_weights.h areas/membership.h areas/areas_from_scene.h
   areas/area_rays.h areas/measure.h areas/shared_area.h areas/detect.h areas/detect_lights.h
   tree/build_options.h tree/bvh.h tree/box_frame.h tree/bvh_check.h tree/wide.h tree/compact.h tree/build_reference.h tree/oracle.h tree/candidate_tree.h tree/top_level.h
-  tree/optimise.h tree/tree_file.h tree/tree_export.h
+  tree/optimise.h tree/depth_map.h tree/tree_file.h tree/tree_export.h
   tree/merge_leaves.h tree/trace_reference.h
   plan/ray_sample.h plan/child_order.h plan/optimise_for_rays.h plan/race.h plan/choose.h plan/outlook.h
   cl/opencl.h cl/check.h cl/handle.h cl/device.h cl/context.h cl/launch.h

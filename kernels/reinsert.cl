@@ -3,6 +3,28 @@
 // Every kernel's result depends on the tree alone: moves are settled by integer maxima, sums are of integers.
 #include "shared/reinsert_math.h"
 
+// What boxes cost, as a kernel's last arguments say: face weights, and areas where there are any.
+#if GN_AREA_COSTS
+#define GN_COST_PARAMETERS \
+  float wx, float wy, float wz, __global const GnAreaCost *areas, uint area_count, __global const gn_u16 *maps
+#define GN_COSTS wx, wy, wz, areas, area_count, maps
+#else
+#define GN_COST_PARAMETERS float wx, float wy, float wz
+#define GN_COSTS wx, wy, wz
+#endif
+
+static inline void set_costs(GnBoxCosts* costs, GN_COST_PARAMETERS) {
+#if GN_AREA_COSTS
+  uint i;
+  for (i = 0u; i < area_count; ++i) costs->areas[i] = areas[i];
+  costs->count = area_count;
+  costs->maps = maps;
+#endif
+  costs->w[0] = wx;
+  costs->w[1] = wy;
+  costs->w[2] = wz;
+}
+
 // One work-item per node. A leaf's count becomes that of its different triangles.
 __kernel void load_slots(__global const GnNode* nodes, __global const uint* order, __global GnNode* slots,
                          __global uint* above, uint count) {
@@ -149,16 +171,17 @@ __kernel void join_top(__global GnNode* slots, __global GnBelow* below, __global
 // One work-item per run of slots: puts the costs of all nodes but the root in bins, counts these, and adds the costs of
 // inner nodes up. Nodes near which something moved are settled no more.
 __kernel void weigh_slots(__global const GnNode* slots, __global const uint* above, __global const GnBelow* below,
-                          __global ushort* cost_bins, volatile __global uint* bins, __global ulong* sums, float wx,
-                          float wy, float wz, float units, uint count, uint run) {
+                          __global ushort* cost_bins, volatile __global uint* bins, __global ulong* sums, float units,
+                          uint count, uint run, GN_COST_PARAMETERS) {
   const uint chunk = (uint)get_global_id(0);
   const uint begin = GN_ROOT_SLOT + chunk * run;
-  const GnFaces faces = {{wx, wy, wz}};
+  GnBoxCosts costs;
   ulong sum = 0u;
   uint i;
   if (begin > count) return;
+  set_costs(&costs, GN_COSTS);
   for (i = begin; i <= count && i < begin + run; ++i) {
-    const float cost = gn_slot_cost(&faces, slots + i);
+    const float cost = gn_slot_cost(&costs, slots + i);
     const uint bin = gn_cost_bin(cost);
     const uint settled = cost_bins[i] & GN_SETTLED;
     const uint stays = settled && !below[gn_pair_near(above, i)].changed;
@@ -182,13 +205,15 @@ __kernel void list_candidates(__global const ushort* cost_bins, __global uint* c
 
 // One work-item per run of candidates. leave: those that stay are settled.
 __kernel void find_moves(__global const GnNode* slots, __global const uint* above, __global const uint* candidates,
-                         __global GnMove* moves, __global ushort* cost_bins, float wx, float wy, float wz, uint leave,
-                         uint count, uint run) {
+                         __global GnMove* moves, __global ushort* cost_bins, uint leave, uint count, uint run,
+                         GN_COST_PARAMETERS) {
   const uint begin = (uint)get_global_id(0) * run;
-  const GnFaces faces = {{wx, wy, wz}};
+  GnBoxCosts costs;
   uint i;
+  if (begin >= count) return;
+  set_costs(&costs, GN_COSTS);
   for (i = begin; i < count && i < begin + run; ++i) {
-    const GnMove move = gn_find_move(slots, above, &faces, candidates[i]);
+    const GnMove move = gn_find_move(slots, above, &costs, candidates[i]);
     if (leave && move.target == GN_NONE) cost_bins[move.node] |= (ushort)GN_SETTLED;
     moves[i] = move;
   }

@@ -17,6 +17,9 @@ namespace {
 constexpr std::uint32_t kSlotRun = 1024;
 constexpr std::uint32_t kCandidateRun = 16;
 
+// Nothing but face weights is compiled.
+constexpr const char* kFaceOptions = "-DGN_KIND=0u";
+
 // Turns of the loops that one node may cost in the one work-item that cuts the tree and joins its top.
 constexpr std::uint64_t kTurnsPerNode = 2;
 
@@ -52,9 +55,7 @@ class Optimiser {
     join_cut();
     require_depth(whole().height);
     const Node root = context_.download_values<Node>(slots_, 1, GN_ROOT_SLOT).front();
-    GnFaces faces{};
-    std::copy(options_.face_weights.begin(), options_.face_weights.end(), faces.w);
-    units_ = units_of(gn_slot_cost(&faces, &root));
+    units_ = units_of(root_cost(root));
     if (units_ > 0.0F) run_passes(*this, options_);
     return renumber();
   }
@@ -63,8 +64,8 @@ class Optimiser {
     join();
     const std::uint32_t chunks = runs_of(nodes_, slot_run_);
     context_.fill(bins_, 0);
-    launch("weigh", "weigh_slots", chunks, slots_, above_, below_, cost_bins_, bins_, sums_, w(0), w(1), w(2),
-           units_, nodes_, slot_run_);
+    launch_costs("weigh", "weigh_slots", chunks, slots_, above_, below_, cost_bins_, bins_, sums_, units_,
+                 nodes_, slot_run_);
     TreeWeight weight;
     weight.bins = context_.download_values<std::uint32_t>(bins_, GN_MEASURE_BINS);
     const auto parts = context_.download_values<std::uint64_t>(sums_, chunks);
@@ -80,8 +81,8 @@ class Optimiser {
     count_ = context_.download_values<std::uint32_t>(length_, 1).front();
     if (count_ == 0) return 0;
     moves_ = context_.create_buffer("moves", count_ * sizeof(GnMove));
-    launch("search", "find_moves", runs_of(count_, candidate_run_), slots_, above_, candidates_, moves_,
-           cost_bins_, w(0), w(1), w(2), std::uint32_t{options_.leave_settled}, count_, candidate_run_);
+    launch_costs("search", "find_moves", runs_of(count_, candidate_run_), slots_, above_, candidates_, moves_,
+                 cost_bins_, std::uint32_t{options_.leave_settled}, count_, candidate_run_);
     for (const cl::Buffer* claims : {&gains_, &owners_, &moving_, &length_}) context_.fill(*claims, 0);
     launch_light("settle", "bid_gains", count_, moves_, gains_, count_);
     launch_light("settle", "bid_slots", count_, moves_, gains_, owners_, count_);
@@ -109,13 +110,44 @@ class Optimiser {
   // of a group its own copy of a kernel's stack.
   template <typename... Arguments>
   void launch(const char* stage, const char* name, std::uint32_t items, const Arguments&... arguments) {
-    run("reinsert.cl", stage, name, items, context_.device().is_cpu ? 1 : widest(), arguments...);
+    run("reinsert.cl", kFaceOptions, stage, name, items, context_.device().is_cpu ? 1 : widest(),
+        arguments...);
+  }
+
+  // The same for kernels that ask what boxes cost, which are compiled without areas where there are none.
+  template <typename... Arguments>
+  void launch_costs(const char* stage, const char* name, std::uint32_t items, const Arguments&... arguments) {
+    if (options_.areas.empty()) {
+      launch(stage, name, items, arguments..., w(0), w(1), w(2));
+    } else {
+      run("reinsert.cl", "-DGN_AREA_COSTS=1", stage, name, items, context_.device().is_cpu ? 1 : widest(),
+          arguments..., w(0), w(1), w(2), areas_, area_count_, maps_);
+    }
+  }
+
+  // Sends areas to the device on the way: their scales are relative to the root.
+  float root_cost(const Node& root) {
+    GnBoxCosts costs{};
+    std::copy(options_.face_weights.begin(), options_.face_weights.end(), costs.w);
+    const float faces = gn_slot_cost(&costs, &root);
+    if (options_.areas.empty()) return faces;
+    AreaCosts all = area_costs(options_.areas, faces, root.lo, root.hi);
+    if (all.maps.empty()) all.maps.push_back(0);  // no buffer is empty
+    area_count_ = static_cast<std::uint32_t>(all.areas.size());
+    areas_ = context_.create_buffer("optimise_areas", all.areas.size() * sizeof(GnAreaCost));
+    maps_ = context_.create_buffer("optimise_maps", all.maps.size() * sizeof(std::uint16_t));
+    context_.upload_values<GnAreaCost>(areas_, all.areas);
+    context_.upload_values<std::uint16_t>(maps_, all.maps);
+    std::copy(all.areas.begin(), all.areas.end(), costs.areas);
+    costs.count = area_count_;
+    costs.maps = all.maps.data();
+    return gn_slot_cost(&costs, &root);
   }
 
   // Items that do little and have no stack go in groups on CPUs too.
   template <typename... Arguments>
   void launch_light(const char* stage, const char* name, std::uint32_t items, const Arguments&... arguments) {
-    run("reinsert.cl", stage, name, items, widest(), arguments...);
+    run("reinsert.cl", kFaceOptions, stage, name, items, widest(), arguments...);
   }
 
   [[nodiscard]] std::size_t widest() const {
@@ -123,10 +155,10 @@ class Optimiser {
   }
 
   template <typename... Arguments>
-  void run(const char* source, const char* stage, const char* name, std::uint32_t items, std::size_t group,
-           const Arguments&... arguments) {
+  void run(const char* source, const char* program_options, const char* stage, const char* name,
+           std::uint32_t items, std::size_t group, const Arguments&... arguments) {
     if (items == 0) return;
-    const cl::Handle<cl_kernel> kernel = context_.programs().kernel({source}, "-DGN_KIND=0u", name);
+    const cl::Handle<cl_kernel> kernel = context_.programs().kernel({source}, program_options, name);
     cl::set_arguments(kernel.get(), arguments...);
     const std::size_t local = items == 1 ? 1 : group;
     times_.add(stage,
@@ -177,11 +209,11 @@ class Optimiser {
     out.order = context_.create_buffer("order", all.triangles * sizeof(std::uint32_t));
     out.leaf_triangles = context_.create_buffer("leaf_triangles", all.triangles * sizeof(GnLeafTriangle));
     const cl::Buffer places = context_.create_buffer("places", slots_of(nodes_) * 4 * sizeof(std::uint32_t));
-    run("renumber.cl", "renumber", "write_top", 1, 1, slots_, below_, tree_.order, tree_.leaf_triangles,
-        out.nodes, out.order, out.leaf_triangles, top_, places, top_count_);
-    run("renumber.cl", "renumber", "write_subtrees", task_count_, context_.device().is_cpu ? 1 : widest(),
-        slots_, below_, tree_.order, tree_.leaf_triangles, out.nodes, out.order, out.leaf_triangles, tasks_,
-        places, task_count_);
+    run("renumber.cl", kFaceOptions, "renumber", "write_top", 1, 1, slots_, below_, tree_.order,
+        tree_.leaf_triangles, out.nodes, out.order, out.leaf_triangles, top_, places, top_count_);
+    run("renumber.cl", kFaceOptions, "renumber", "write_subtrees", task_count_,
+        context_.device().is_cpu ? 1 : widest(), slots_, below_, tree_.order, tree_.leaf_triangles, out.nodes,
+        out.order, out.leaf_triangles, tasks_, places, task_count_);
     return out;
   }
 
@@ -194,11 +226,12 @@ class Optimiser {
   std::uint32_t task_count_ = 0;
   std::uint32_t top_count_ = 0;
   std::uint32_t count_ = 0;  // candidates of the last pass
+  std::uint32_t area_count_ = 0;
   float units_ = 0.0F;
   bool joined_ = false;  // boxes and sizes are those of the links
   cl::StageTimes times_;
   cl::Buffer slots_, above_, below_, tasks_, top_, numbers_, bins_, sums_, candidates_, length_, gains_,
-      owners_, moving_, cost_bins_, moves_;
+      owners_, moving_, cost_bins_, moves_, areas_, maps_;
 };
 
 }  // namespace

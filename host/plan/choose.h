@@ -98,6 +98,8 @@ struct PlanOptions {
 // "sah-order": the same tree, any-hit children in the order learnt from the rays.
 // "sah-rays": reinsertion goes on by sampled rays.
 // "sah-mix": reinsertion goes on by the mixture of surface area and the rays' own measure.
+// "sah-seen": reinsertion goes on by what the bundles and pencils that detect finds in the rays see of boxes,
+// less what stands behind the first thing they meet (a depth map of each); surface area for all other rays.
 // "mix", "mix-rays": built by the mixture from the start, and then by sampled rays.
 // "light-mix", "light-rays": as "mix" and "mix-rays", their boxes in a frame along the rays; made for
 // PlanOptions::light_space alone.

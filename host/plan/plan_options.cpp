@@ -18,9 +18,9 @@ void require(bool ok, const std::string& option, const std::string& value, const
 }  // namespace
 
 const std::vector<std::string>& candidate_names() {
-  static const std::vector<std::string> names{"sah",      "sah-order",  "sah-mix",   "sah-rays",
-                                              "best",     "best-order", "best-rays", "mix",
-                                              "mix-rays", "light-mix",  "light-rays"};
+  static const std::vector<std::string> names{"sah",       "sah-order", "sah-mix",    "sah-rays",  "sah-seen",
+                                              "seen-rays", "best",      "best-order", "best-rays", "mix",
+                                              "mix-rays",  "light-mix", "light-rays"};
   return names;
 }
 

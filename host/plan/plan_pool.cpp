@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gnomon/plan/child_order.h"
+#include "gnomon/plan/seen_areas.h"
 #include "gnomon/shared/hit_math.h"
 #include "gnomon/shared/measure_math.h"
 #include "gnomon/tree/box_frame.h"
@@ -67,6 +68,25 @@ Bvh PlanPool::moved(const Bvh& bvh, const std::array<float, 3>& weights) const {
   OptimiseOptions optimise = options_.optimise;
   optimise.face_weights = weights;
   return builder_.optimise(bvh, optimise);
+}
+
+// The baseline's moves go on by what the areas that rays run through see; with `sampled`, then by rays.
+void PlanPool::move_by_areas(const Space& space, bool sampled, Entry& entry) {
+  PlanTree& out = entry.tree;
+  SeenAreas seen = seen_areas(baseline_.tree.bvh, triangles_, fit_);
+  out.build_units = options_.prices.trace * seen.traced;
+  if (seen.areas.empty() && sampled) return fit(loose_baseline_, space, entry);
+  if (seen.areas.empty()) {
+    out.tree.bvh = baseline_.tree.bvh;
+    return;
+  }
+  OptimiseOptions optimise = options_.optimise;
+  optimise.areas = std::move(seen.areas);
+  const Bvh loose = builder_.optimise(loose_baseline_, optimise);
+  out.build_units += move_price();
+  if (sampled) return fit(loose, space, entry);
+  out.tree.bvh = merge_leaves(loose, box_costs(loose, optimise), {}, &out.tree.weights);
+  out.build_units += for_all(options_.prices.finish);
 }
 
 void PlanPool::aim_at(const PlanRays& rays) {
@@ -134,7 +154,8 @@ double PlanPool::likely_price(const std::string& name) {
   const bool light = name.starts_with("light");
   if (light && !frame_) price += for_all(options_.prices.turn);
   if (light || name.starts_with("mix")) price += build_price();
-  if (light || name.find("mix") != std::string::npos) price += move_price();
+  if (light || name.find("seen") != std::string::npos || name.find("mix") != std::string::npos)
+    price += move_price();
   if (name.ends_with("-rays")) price += rays + options_.sample_share * baseline_units_;
   return price;
 }
@@ -170,6 +191,8 @@ PlanPool::Entry PlanPool::make(const std::string& name) {
   const bool as_it_is = name == baseline_.name || name.ends_with("-order");
   if (as_it_is) {
     bvh = baseline_.tree.bvh;
+  } else if (name == "sah-seen" || name == "seen-rays") {
+    move_by_areas(space, name == "seen-rays", entry);
   } else if (name == baseline_.name + "-rays") {
     fit(loose_baseline_, space, entry);
   } else {

@@ -50,6 +50,7 @@ class PlanPool {
   [[nodiscard]] Bvh built(std::span<const Triangle> triangles, const std::array<float, 3>& weights,
                           bool parts = false) const;
   [[nodiscard]] Bvh moved(const Bvh& bvh, const std::array<float, 3>& weights) const;
+  void move_by_areas(const Space& space, bool sampled, Entry& entry);
   void fit(const Bvh& from, const Space& space, Entry& entry);
   void learn(PlanTree& tree, const Space& space);
   [[nodiscard]] float own_share() const;  // of the rays' own measure in weights

@@ -13,29 +13,35 @@ namespace gnomon {
 
 namespace {
 
-void require(bool ok, const char* option, const std::string& value, const char* range) {
+void require(bool ok, const char* option, const std::string& value, const std::string& range) {
   if (ok) return;
   throw Error(ErrorCode::kInvalidArgument,
               std::string("optimise option ") + option + " = " + value + " is outside its range " + range);
 }
 
-// What face weights say.
-class FaceCosts {
+class BoxCosts {
  public:
-  explicit FaceCosts(const std::array<float, 3>& weights) {
-    std::copy(weights.begin(), weights.end(), faces_.w);
+  // The options must outlive it.
+  BoxCosts(const OptimiseOptions& options, const Node& root) {
+    std::copy(options.face_weights.begin(), options.face_weights.end(), costs_.w);
+    if (options.areas.empty()) return;
+    areas_ = area_costs(options.areas, gn_linear_measure(costs_.w, root.lo, root.hi), root.lo, root.hi);
+    costs_.count = static_cast<std::uint32_t>(areas_.areas.size());
+    costs_.maps = areas_.maps.data();
+    std::copy(areas_.areas.begin(), areas_.areas.end(), costs_.areas);
   }
   void prepare(const std::vector<Node>&) {}
   [[nodiscard]] float of(const std::vector<Node>& slots, std::uint32_t slot) const {
-    return gn_slot_cost(&faces_, &slots[slot]);
+    return gn_slot_cost(&costs_, &slots[slot]);
   }
   [[nodiscard]] GnMove find(const std::vector<Node>& slots, const std::vector<std::uint32_t>& above,
                             std::uint32_t slot) const {
-    return gn_find_move(slots.data(), above.data(), &faces_, slot);
+    return gn_find_move(slots.data(), above.data(), &costs_, slot);
   }
 
  private:
-  GnFaces faces_{};
+  AreaCosts areas_;
+  GnBoxCosts costs_{};
 };
 
 }  // namespace
@@ -43,6 +49,14 @@ class FaceCosts {
 void OptimiseOptions::check() const {
   for (const float w : face_weights)
     require(w >= 0.0F && std::isfinite(w), "face_weights", std::to_string(w), "of finite numbers >= 0");
+  require(areas.size() <= GN_MOST_COST_AREAS, "areas", std::to_string(areas.size()) + " of them",
+          "0.." + std::to_string(GN_MOST_COST_AREAS));
+  for (const AreaCost& area : areas) {
+    require(area.share >= 0.0F && std::isfinite(area.share), "areas: share", std::to_string(area.share),
+            "of finite numbers >= 0");
+    require(area.map.sums.empty() || area.map.sums.size() == GN_MAP_SUMS, "areas: sums of a map",
+            std::to_string(area.map.sums.size()), "0 or " + std::to_string(GN_MAP_SUMS));
+  }
   require(max_passes <= 64, "max_passes", std::to_string(max_passes), "0..64");
   require(share > 0.0F && share <= 1.0F, "share", std::to_string(share), "(0, 1]");
   require(least_gain >= 0.0F && least_gain < 1.0F, "least_gain", std::to_string(least_gain), "[0, 1)");
@@ -74,8 +88,17 @@ float units_of(float root_cost) {
 Bvh optimise_reference(const Bvh& bvh, const OptimiseOptions& options) {
   options.check();
   if (bvh.nodes.empty()) return bvh;
-  FaceCosts costs(options.face_weights);
-  return Optimiser<FaceCosts>(bvh, options, costs).run();
+  BoxCosts costs(options, bvh.nodes.front());
+  return Optimiser<BoxCosts>(bvh, options, costs).run();
+}
+
+std::vector<float> box_costs(const Bvh& bvh, const OptimiseOptions& options) {
+  options.check();
+  std::vector<float> out;
+  if (bvh.nodes.empty()) return out;
+  const BoxCosts costs(options, bvh.nodes.front());
+  for (std::uint32_t i = 0; i < bvh.nodes.size(); ++i) out.push_back(costs.of(bvh.nodes, i));
+  return out;
 }
 
 }  // namespace gnomon

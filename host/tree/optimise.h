@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gnomon/tree/bvh.h"
+#include "gnomon/tree/depth_map.h"
 
 namespace gnomon {
 
@@ -16,6 +17,9 @@ struct OptimiseOptions {
   // What boxes cost: w . (dy dz, dx dz, dx dy). 1 each is surface area (SAH); |n| are parallel rays along n
   // (PAH), and mixtures of both are other weights (kernels/shared/measure_math.h). >= 0, finite.
   std::array<float, 3> face_weights{1.0F, 1.0F, 1.0F};
+  // Beside face weights: rays of areas, of any measure, less where a depth map says that they are stopped
+  // before. At most GN_MOST_COST_AREAS.
+  std::vector<AreaCost> areas{};
   std::uint32_t max_passes = 6;  // 0..64
   float share = 0.05F;           // of the nodes, the most costly ones, that a pass tries to move; (0, 1]
   float least_gain = 0.01F;      // passes end when one saves less than this share of the cost; [0, 1)
@@ -34,6 +38,10 @@ struct OptimiseOptions {
 // builders number. Any boxes will do: leaves' are kept. Throws Error: kInvalidArgument (options; a tree
 // deeper than 128).
 [[nodiscard]] Bvh optimise_reference(const Bvh& bvh, const OptimiseOptions& options = {});
+
+// What each node's box costs by face weights and areas, scaled as optimising a tree with this root scales
+// them. Throws Error{kInvalidArgument} (options).
+[[nodiscard]] std::vector<float> box_costs(const Bvh& bvh, const OptimiseOptions& options);
 
 // Throws Error{kInvalidArgument} for a tree deeper than the search's stacks can follow.
 void require_depth(std::uint32_t depth);

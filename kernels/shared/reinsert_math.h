@@ -6,19 +6,9 @@
 #ifndef GNOMON_SHARED_REINSERT_MATH_H
 #define GNOMON_SHARED_REINSERT_MATH_H
 
+#include "box_costs.h"
 #include "collapse_math.h"
-#include "measure_math.h"
 #include "reinsert_layout.h"
-
-// The seam for measures: any that three face weights express (measure_math.h).
-typedef struct GnFaces {
-  gn_f32 w[3];
-} GnFaces;
-
-typedef struct GnBox {
-  gn_f32 lo[3];
-  gn_f32 hi[3];
-} GnBox;
 
 // Axes are written out here and below: a loop over them has compilers keep the box in memory and read it back
 // in other pieces than it was written in, for which the search waited as long as for all else.
@@ -46,18 +36,29 @@ GN_INLINE int gn_is_box_of(const GnBox* box, GN_GLOBAL const GnNode* node) {
          (box->hi[0] == node->hi[0]) & (box->hi[1] == node->hi[1]) & (box->hi[2] == node->hi[2]);
 }
 
-GN_INLINE gn_f32 gn_box_cost(const GnFaces* faces, const GnBox* box) {
-  return gn_linear_measure(faces->w, box->lo, box->hi);
-}
-
-GN_INLINE gn_f32 gn_slot_cost(const GnFaces* faces, GN_GLOBAL const GnNode* node) {
-  return gn_linear_extents(faces->w, node->hi[0] - node->lo[0], node->hi[1] - node->lo[1],
-                           node->hi[2] - node->lo[2]);
+GN_INLINE gn_f32 gn_slot_cost(const GnBoxCosts* costs, GN_GLOBAL const GnNode* node) {
+  const gn_f32 faces =
+      gn_linear_extents(costs->w, node->hi[0] - node->lo[0], node->hi[1] - node->lo[1], node->hi[2] - node->lo[2]);
+#if GN_AREA_COSTS
+  if (costs->count > 0u) {
+    GnBox box;
+    gn_load_box(node, &box);
+    return faces + gn_area_costs(costs, &box);
+  }
+#endif
+  return faces;
 }
 
 // The cost of the box around a node and another box.
-GN_INLINE gn_f32 gn_joint_cost(const GnFaces* faces, const GnBox* box, GN_GLOBAL const GnNode* node) {
-  return gn_linear_extents(faces->w, gn_max(box->hi[0], node->hi[0]) - gn_min(box->lo[0], node->lo[0]),
+GN_INLINE gn_f32 gn_joint_cost(const GnBoxCosts* costs, const GnBox* box, GN_GLOBAL const GnNode* node) {
+#if GN_AREA_COSTS
+  if (costs->count > 0u) {
+    GnBox joint = *box;
+    gn_grow_box(&joint, node);
+    return gn_box_cost(costs, &joint);
+  }
+#endif
+  return gn_linear_extents(costs->w, gn_max(box->hi[0], node->hi[0]) - gn_min(box->lo[0], node->lo[0]),
                            gn_max(box->hi[1], node->hi[1]) - gn_min(box->lo[1], node->lo[1]),
                            gn_max(box->hi[2], node->hi[2]) - gn_min(box->lo[2], node->lo[2]));
 }
@@ -83,13 +84,13 @@ GN_INLINE void gn_push_pair(GnSearch* search, gn_u32 first, gn_f32 saved) {
 }
 
 // What is saved below `node` if the box passes through it, or not enough when it is a leaf.
-GN_INLINE gn_f32 gn_saved_below(const GnFaces* faces, GN_GLOBAL const GnNode* node, gn_f32 gain) {
-  return node->count > 0u ? -GN_INFINITY : gain + gn_slot_cost(faces, node);
+GN_INLINE gn_f32 gn_saved_below(const GnBoxCosts* costs, GN_GLOBAL const GnNode* node, gn_f32 gain) {
+  return node->count > 0u ? -GN_INFINITY : gain + gn_slot_cost(costs, node);
 }
 
 // The best place among the nodes waiting and all below them. Branches that cannot beat the best so far are left out: a
 // parent made for the node costs no less than the node.
-GN_INLINE void gn_search_below(GN_GLOBAL const GnNode* slots, const GnFaces* faces, const GnBox* box, gn_f32 own,
+GN_INLINE void gn_search_below(GN_GLOBAL const GnNode* slots, const GnBoxCosts* costs, const GnBox* box, gn_f32 own,
                                gn_u32 pivot, GnSearch* search, GnMove* move) {
   while (search->height > 0u && search->left > 0u) {
     const gn_u32 top = search->height - 1u;
@@ -97,10 +98,10 @@ GN_INLINE void gn_search_below(GN_GLOBAL const GnNode* slots, const GnFaces* fac
     const gn_f32 saved = search->saved[top];
     search->height = top;
     if (saved - own > move->gain) {
-      const gn_f32 left_gain = saved - gn_joint_cost(faces, box, slots + first);
-      const gn_f32 right_gain = saved - gn_joint_cost(faces, box, slots + first + 1u);
-      const gn_f32 left = gn_saved_below(faces, slots + first, left_gain);
-      const gn_f32 right = gn_saved_below(faces, slots + first + 1u, right_gain);
+      const gn_f32 left_gain = saved - gn_joint_cost(costs, box, slots + first);
+      const gn_f32 right_gain = saved - gn_joint_cost(costs, box, slots + first + 1u);
+      const gn_f32 left = gn_saved_below(costs, slots + first, left_gain);
+      const gn_f32 right = gn_saved_below(costs, slots + first + 1u, right_gain);
       const int right_first = right > left;
       const gn_f32 best = gn_max(left_gain, right_gain);
       search->left -= 1u;
@@ -120,7 +121,7 @@ GN_INLINE void gn_search_below(GN_GLOBAL const GnNode* slots, const GnFaces* fac
 
 // Searches the whole tree for the best place of a node, from its sibling up to the root. above: for each pair its parent's
 // slot. Gains up to GN_LEAST_GAIN of the node's own cost do not count.
-GN_INLINE GnMove gn_find_move(GN_GLOBAL const GnNode* slots, GN_GLOBAL const gn_u32* above, const GnFaces* faces,
+GN_INLINE GnMove gn_find_move(GN_GLOBAL const GnNode* slots, GN_GLOBAL const gn_u32* above, const GnBoxCosts* costs,
                               gn_u32 node) {
   GnSearch search;
   GnMove move;
@@ -130,8 +131,8 @@ GN_INLINE GnMove gn_find_move(GN_GLOBAL const GnNode* slots, GN_GLOBAL const gn_
   int going = 1, first = 1, shrinks = 1;
   gn_load_box(slots + node, &box);
   gn_load_box(slots + beside, &shrunk);  // of what will be left of the pivot
-  own = gn_box_cost(faces, &box);
-  saved = gn_slot_cost(faces, slots + pivot);
+  own = gn_box_cost(costs, &box);
+  saved = gn_slot_cost(costs, slots + pivot);
   move.node = node;
   move.target = GN_NONE;
   move.pivot = 0u;
@@ -142,19 +143,19 @@ GN_INLINE GnMove gn_find_move(GN_GLOBAL const GnNode* slots, GN_GLOBAL const gn_
   search.height = 0u;
   search.left = GN_SEARCH_PAIRS;
   while (going) {
-    const gn_f32 gain = saved - gn_joint_cost(faces, &box, slots + beside);
-    const gn_f32 below = gn_saved_below(faces, slots + beside, gain);
+    const gn_f32 gain = saved - gn_joint_cost(costs, &box, slots + beside);
+    const gn_f32 below = gn_saved_below(costs, slots + beside, gain);
     if (!first && gain > move.gain) {
       move.gain = gain;
       move.target = beside;
       move.pivot = pivot;
     }
     if (below - own > move.gain) gn_push_pair(&search, slots[beside].first, below);
-    gn_search_below(slots, faces, &box, own, pivot, &search, &move);
+    gn_search_below(slots, costs, &box, own, pivot, &search, &move);
     // Where the pivot does not shrink, nothing above it does.
     if (shrinks && !first) {
       gn_grow_box(&shrunk, slots + beside);
-      saved += gn_slot_cost(faces, slots + pivot) - gn_box_cost(faces, &shrunk);
+      saved += gn_slot_cost(costs, slots + pivot) - gn_box_cost(costs, &shrunk);
     }
     if (shrinks) shrinks = !gn_is_box_of(&shrunk, slots + pivot);
     if (pivot == GN_ROOT_SLOT || search.left == 0u || (!shrinks && saved - own <= move.gain)) going = 0;

@@ -15,6 +15,7 @@
 typedef float gn_f32;
 typedef int gn_i32;
 typedef uint gn_u32;
+typedef ushort gn_u16;
 #define GN_INLINE static inline
 #define GN_GLOBAL __global  // where buffers are
 #define GN_SIZE_IS(type, bytes)
@@ -30,6 +31,7 @@ typedef uint gn_u32;
 using gn_f32 = float;
 using gn_i32 = std::int32_t;
 using gn_u32 = std::uint32_t;
+using gn_u16 = std::uint16_t;
 #define GN_INLINE static inline
 #define GN_GLOBAL
 #define GN_SIZE_IS(type, bytes) static_assert(sizeof(type) == (bytes), #type " must have no padding")

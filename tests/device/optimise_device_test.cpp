@@ -6,6 +6,7 @@
 #include "gnomon/device/trace_device.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/bvh_check.h"
+#include "support/areas_of_rays.h"
 #include "support/device.h"
 #include "support/shapes.h"
 
@@ -87,6 +88,30 @@ TEST_CASE("large trees are cut into subtrees and optimised as the reference's", 
   OptimiseOptions from_above;
   from_above.face_weights = {0.2F, 1.0F, 0.1F};
   REQUIRE(require_same(gnomon::test::soup(30000, 214, 0.2F), {}, from_above));
+}
+
+TEST_CASE("what areas see of boxes moves nodes as in the reference, with depth maps and without",
+          "[unlimited][optimise]") {
+  const Triangles triangles = gnomon::test::soup(600, 224, 0.4F);
+  const auto areas = gnomon::test::areas_around(triangles);
+  OptimiseOptions options = every_node(3);
+  for (const auto& area : areas) {
+    options.areas = {area};
+    REQUIRE(require_same(triangles, poor(), options));
+  }
+  options.areas = areas;
+  REQUIRE(require_same(triangles, poor(), options));
+  for (const auto& [name, some] : gnomon::test::awkward_inputs()) {
+    CAPTURE(name);
+    static_cast<void>(require_same(some, {}, options));
+  }
+}
+
+TEST_CASE("a few nodes are moved by what areas see within their buffers", "[memcheck][optimise]") {
+  const Triangles triangles = gnomon::test::soup(30, 225);
+  OptimiseOptions options = every_node(1);
+  options.areas = gnomon::test::areas_around(triangles);
+  static_cast<void>(require_same(triangles, poor(), options));
 }
 
 TEST_CASE("a pass the device must take back leaves the reference's tree", "[portable][optimise]") {

@@ -224,6 +224,21 @@ TEST_CASE("a choice by name is kept without a test") {
                       Catch::Contains("finest") && Catch::Contains("mix-rays"));
 }
 
+TEST_CASE("boxes that areas see make camera rays cheaper, and diffuse rays have no areas") {
+  PlanOptions options;
+  options.choice = "sah-seen";
+  const Plan plan = gnomon::make_plan(cottage().triangles, both_kinds(1.0), options);
+  const auto fresh = gnomon::primary_rays(cottage(), 2000, 3);
+  const gnomon::OrderedTree& seen = plan.trees[plan.decisions[0].tree].tree;
+  REQUIRE(mean_cost(seen, fresh, Query::kClosest) <
+          0.95 * mean_cost(plan.trees[0].tree, fresh, Query::kClosest));
+  REQUIRE(plan.trees[plan.decisions[0].tree].build_units > 0.0);
+  const std::vector<PlanRays> diffuse{{"random", Query::kClosest, gnomon::random_rays(cottage(), 512, 1),
+                                       gnomon::random_rays(cottage(), 1024, 2), 1.0}};
+  const Plan none = gnomon::make_plan(cottage().triangles, diffuse, options);
+  REQUIRE(tree_hash(none.trees[none.decisions[0].tree].tree.bvh) == tree_hash(none.trees[0].tree.bvh));
+}
+
 TEST_CASE("plans are the same again, and JSON tells all of them") {
   const auto rays = both_kinds(kMany);
   PlanOptions options;

@@ -37,12 +37,13 @@ struct PlanPrices {
   double build = 38.0;            // and a triangle
   double move_start = 120'000.0;  // of reinsertion by areas, until passes end
   double move = 40.0;
-  double finish = 5.0;   // of joining leaves, a triangle
-  double divide = 10.0;  // of triangles into parts, a part
-  double turn = 9.0;     // of putting triangles in a frame, three of which are looked at, a triangle
-  double learn = 9.0;    // of learning an order of children, a triangle, beside its rays
-  double trace = 3.0;    // of a box test of a plan's own: probes and samples are traced by the reference
-  double byte = 0.05;    // of a tree that is held beside the baseline
+  double move_seen = 3'000.0;  // of reinsertion by what areas see, a triangle: measures of points are long
+  double finish = 5.0;         // of joining leaves, a triangle
+  double divide = 10.0;        // of triangles into parts, a part
+  double turn = 9.0;           // of putting triangles in a frame, three of which are looked at, a triangle
+  double learn = 9.0;          // of learning an order of children, a triangle, beside its rays
+  double trace = 3.0;  // of a box test of a plan's own: probes and samples are traced by the reference
+  double byte = 0.05;  // of a tree that is held beside the baseline
   // What a unit less is worth where rays to come are traced: a device takes 2 to 3 ns for one by now, and
   // what counts save is not all saved in time (bench/results/ray-aware-time.md).
   double saved = 0.2;

@@ -58,8 +58,8 @@ void PlanOptions::check() const {
             "of finite numbers >= 1");
   race.check();
   for (const double price :
-       {prices.build_start, prices.build, prices.move_start, prices.move, prices.finish, prices.divide,
-        prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})
+       {prices.build_start, prices.build, prices.move_start, prices.move, prices.move_seen, prices.finish,
+        prices.divide, prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})
     require(price >= 0.0 && std::isfinite(price), "prices", std::to_string(price), "of finite numbers >= 0");
 }
 

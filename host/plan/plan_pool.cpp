@@ -83,7 +83,7 @@ void PlanPool::move_by_areas(const Space& space, bool sampled, Entry& entry) {
   OptimiseOptions optimise = options_.optimise;
   optimise.areas = std::move(seen.areas);
   const Bvh loose = builder_.optimise(loose_baseline_, optimise);
-  out.build_units += move_price();
+  out.build_units += for_all(options_.prices.move_seen);
   if (sampled) return fit(loose, space, entry);
   out.tree.bvh = merge_leaves(loose, box_costs(loose, optimise), {}, &out.tree.weights);
   out.build_units += for_all(options_.prices.finish);
@@ -154,8 +154,8 @@ double PlanPool::likely_price(const std::string& name) {
   const bool light = name.starts_with("light");
   if (light && !frame_) price += for_all(options_.prices.turn);
   if (light || name.starts_with("mix")) price += build_price();
-  if (light || name.find("seen") != std::string::npos || name.find("mix") != std::string::npos)
-    price += move_price();
+  if (name.find("seen") != std::string::npos) price += for_all(options_.prices.move_seen);
+  if (light || name.find("mix") != std::string::npos) price += move_price();
   if (name.ends_with("-rays")) price += rays + options_.sample_share * baseline_units_;
   return price;
 }

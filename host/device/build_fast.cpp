@@ -41,7 +41,7 @@ struct FastPlan {
 
 // Turns that one work-item of merge_segments takes at most: those that count are the serial flavour's, four
 // loops over the clusters a round, where rounds merge two each until they need not choose.
-constexpr std::uint32_t kTurnsPerCluster = 4 * GN_FREE_ROUNDS;
+constexpr std::uint32_t kTurnsPerCluster = 4 * GN_FREE_ROUNDS + 16;
 
 void heed_loop_limit(const FastPlan& plan, const cl::DeviceInfo& device) {
   const std::uint32_t limit = device.loop_limit;

@@ -3,7 +3,6 @@
 // two clusters stands one more, so that prefix sums over the clusters in leaf order tell every node's number: what lies
 // ready in a segment (ploc_parts.h) is copied there, its numbers moved along. Not for merging (ploc.cl).
 #include "group.h"
-#include "ahead.h"
 #include "shared/fast_math.h"
 
 // One work-item per segment: its clusters go behind those of the segments before it, as `clusters` and as triangles that
@@ -88,11 +87,13 @@ __kernel void emit_top(__global const GnNode* top, __global const uint* order, _
   atomic_max(deepest, depth_of_leaf(top, i) + (clusters[order[i]].shape >> 16));
 }
 
+// Past the caches where the compiler has a way to: nothing that is written here is read before all is.
 #if GN_WGS == 1 && defined(POCL_DEVICE_ADDRESS_BITS)
 #define GN_PUT_AWAY(v, i, at) __builtin_nontemporal_store(v, (__global uint4*)(at) + (i))
 #else
 #define GN_PUT_AWAY(v, i, at) vstore4(v, i, at)
 #endif
+
 static inline void copy_triangles(__global const GnLeafTriangle* from, __global GnLeafTriangle* out, __global uint* order,
                                   uint count) {
   uint i;
@@ -119,15 +120,6 @@ static inline void copy_nodes(__global const GnNode* from, __global GnNode* out,
   }
 }
 
-// Where a cluster goes.
-static inline void expect_cluster(__global const GnNode* nodes, __global const GnLeafTriangle* leaf_triangles, uint counts,
-                                  uint triangle, uint split) {
-#if GN_WGS == 1
-  expect_range(leaf_triangles + triangle, (counts & 0xffffu) * sizeof(GnLeafTriangle));
-  expect_range(nodes + 1u + 2u * split, 2u * (counts >> 16) * sizeof(GnNode));
-#endif
-}
-
 // One work-group per segment, whose clusters are those from first[segment] on. leaves: of the clusters, in the tree over
 // them.
 __kernel void emit_clusters(__global const GnLeafTriangle* sorted, __global const GnNode* parts,
@@ -142,7 +134,6 @@ __kernel void emit_clusters(__global const GnLeafTriangle* sorted, __global cons
     if (i < end - begin) {
       const uint leaf = leaves[begin + i], counts = clusters[begin + i].counts, inner = counts >> 16;
       const uint triangle = first_triangle[leaf], split = first_split[leaf];
-      const uint next = min(begin + i + 1u, end - 1u);
       copy_triangles(sorted + triangles_before, leaf_triangles + triangle, order + triangle, counts & 0xffffu);
       copy_nodes(parts + 2u * splits_before, nodes + 1u + 2u * split, 2u * inner, 1u + 2u * (split - splits_before),
                  triangle - triangles_before);

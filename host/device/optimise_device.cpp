@@ -55,7 +55,8 @@ class Optimiser {
     join_cut();
     require_depth(whole().height);
     const Node root = context_.download_values<Node>(slots_, 1, GN_ROOT_SLOT).front();
-    units_ = units_of(root_cost(root));
+    if (!options_.areas.empty()) send_areas(root);
+    units_ = units_of(box_costs({{root}, {}}, options_).front());
     if (units_ > 0.0F) run_passes(*this, options_);
     return renumber();
   }
@@ -125,12 +126,8 @@ class Optimiser {
     }
   }
 
-  // Sends areas to the device on the way: their scales are relative to the root.
-  float root_cost(const Node& root) {
-    GnBoxCosts costs{};
-    std::copy(options_.face_weights.begin(), options_.face_weights.end(), costs.w);
-    const float faces = gn_slot_cost(&costs, &root);
-    if (options_.areas.empty()) return faces;
+  void send_areas(const Node& root) {
+    const float faces = gn_linear_measure(options_.face_weights.data(), root.lo, root.hi);
     AreaCosts all = area_costs(options_.areas, faces, root.lo, root.hi);
     if (all.maps.empty()) all.maps.push_back(0);  // no buffer is empty
     area_count_ = static_cast<std::uint32_t>(all.areas.size());
@@ -138,10 +135,6 @@ class Optimiser {
     maps_ = context_.create_buffer("optimise_maps", all.maps.size() * sizeof(std::uint16_t));
     context_.upload_values<GnAreaCost>(areas_, all.areas);
     context_.upload_values<std::uint16_t>(maps_, all.maps);
-    std::copy(all.areas.begin(), all.areas.end(), costs.areas);
-    costs.count = area_count_;
-    costs.maps = all.maps.data();
-    return gn_slot_cost(&costs, &root);
   }
 
   // Items that do little and have no stack go in groups on CPUs too.

@@ -47,8 +47,8 @@ __kernel void probe_layout(__global uint* out) {
   out[32] = GN_OFFSET(GnForest, triangles);
   out[33] = GN_OFFSET(GnCollapseTask, largest_leaf);
   out[34] = sizeof(GnCompactNode);
-  out[35] = sizeof(GnIndexedTriangle);
-  out[36] = sizeof(GnVertex);
+  out[35] = sizeof(GnPackHead);
+  out[36] = GN_OFFSET(GnPackHead, least);
   out[37] = sizeof(GnPlainTriangle);
   out[38] = GN_OFFSET(GnCompactNode, planes);
   out[39] = sizeof(GnBoxFrame);

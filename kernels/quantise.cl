@@ -1,7 +1,6 @@
 // From the wide tree to the compact one (shared/compact_layout.h): nodes one by one, children in the order of their
-// parent's slots, then triangles, then their corners merged. Corners are sorted by a key of their bits; of those with
-// equal bits the first in leaf order stands for all, so the bytes depend neither on the key nor on how the work was
-// cut. Every work-item's loops are short.
+// parent's slots, then triangles side by side, then each node's triangles packed. The bytes do not depend on how the work
+// was cut.
 #include "shared/compact_math.h"
 
 // One work-item per wide node: where the compact nodes of its children go. largest_leaf: of all, in triangles. is_count:
@@ -34,109 +33,92 @@ __kernel void place_nodes(__global const GnWideNode* wide_nodes, __global const 
 }
 
 // One work-item per wide node: writes the compact one, and for each place of its leaves the seat of the triangle there and
-// where that goes. counts_before: how many places before each hold no triangle.
+// where that goes. spans: of each compact node, its first triangle and how many there are; first_of: of each triangle, the
+// first of its node, or GN_NONE if corners are not to be shared there. counts_before: how many places before each hold no
+// triangle.
 __kernel void write_nodes(__global const GnWideNode* wide_nodes, __global const uint* leaves, __global const uint* places,
-                          __global const uint* counts_before, __global GnCompactNode* nodes, __global uint2* moves,
-                          uint node_count) {
+                          __global const uint* counts_before, __global GnCompactNode* nodes, __global uint2* spans,
+                          __global uint2* moves, __global uint* first_of, uint node_count) {
   const uint index = (uint)get_global_id(0);
   __global const GnWideNode* node = wide_nodes + index;
-  uint child_of[GN_WIDTH], slot, place, next;
+  uint child_of[GN_WIDTH], slot, place, first, next, count;
   GnCompactNode out;
   if (index >= node_count) return;
   gn_assign_slots(node, child_of);
   gn_fill_compact_node(node, leaves, child_of, &out);
   place = gn_first_place(node);
-  if (place != GN_NONE) out.first_triangle = place - counts_before[place];
-  next = out.first_triangle;
+  first = place == GN_NONE ? 0u : place - counts_before[place];
+  count = gn_leaf_triangles(out.counts);
+  next = first;
   for (slot = 0u; slot < GN_WIDTH; ++slot) {
     const uint link = child_of[slot] == GN_NONE ? GN_NONE : node->links[child_of[slot]];
     uint i;
     if (link == GN_NONE || !gn_is_leaf_link(link)) continue;
     {
       const GnLeaf leaf = gn_leaf_at(leaves, link);
-      for (i = 0u; i < leaf.count; ++i) moves[leaf.first + i] = (uint2)(gn_seat_in(leaf, i), next + i);
+      for (i = 0u; i < leaf.count; ++i) {
+        moves[leaf.first + i] = (uint2)(gn_seat_in(leaf, i), next + i);
+        first_of[next + i] = count > GN_MOST_SHARING ? GN_NONE : first;
+      }
       next += leaf.count;
     }
   }
   nodes[places[index]] = out;
+  spans[places[index]] = (uint2)(first, count);
 }
 
-// One work-item per place: writes its triangle, GnPlainTriangle as bits.
-__kernel void write_triangles(__global const uint* leaves, __global const uint2* moves,
-                              __global const uint* counts_before, __global uint* plain, uint place_count) {
+// One work-item per place: the triangle there goes to its node's.
+__kernel void gather_plain(__global const uint* leaves, __global const uint2* moves, __global const uint* counts_before,
+                           __global GnPlainTriangle* triangles, uint place_count) {
   const uint place = (uint)get_global_id(0);
+  GnPlainTriangle out;
   uint2 move;
   __global const uint* corners;
-  __global uint* out;
   uint k;
   if (place >= place_count || counts_before[place + 1u] != counts_before[place]) return;
   move = moves[place];
   corners = leaves + gn_seat_word(move.x);
-  out = plain + GN_TRIANGLE_WORDS * (size_t)move.y;
-  for (k = 0u; k < 9u; ++k) out[k] = corners[k * gn_seat_stride(move.x)];
-  out[9] = gn_number_at(leaves, move.x);
+  for (k = 0u; k < 9u; ++k) out.corners[k] = corners[k * gn_seat_stride(move.x)];
+  out.number = gn_number_at(leaves, move.x);
+  triangles[move.y] = out;
 }
 
-static inline uint3 corner_bits(__global const uint* plain, uint corner) {
-  return vload3(0, plain + 10u * (size_t)(corner / 3u) + 3u * (corner % 3u));
-}
-
-static inline int has_bits(__global const uint* plain, uint corner, uint3 bits) {
-  const uint3 own = corner_bits(plain, corner);
-  return own.x == bits.x && own.y == bits.y && own.z == bits.z;
-}
-
-// One work-item per corner: a pair of its key and itself.
-__kernel void find_corner_keys(__global const uint* plain, __global uint2* pairs, uint key_mask, uint corner_count) {
+// One work-item per corner: the first in its node that equals it, counted from the node's first; nothing where corners
+// are not to be shared.
+__kernel void find_equal_corners(__global const GnPlainTriangle* triangles, __global const uint* first_of,
+                                 __global uint* places, uint corner_count) {
   const uint corner = (uint)get_global_id(0);
-  uint3 bits;
-  uint key;
+  uint first;
   if (corner >= corner_count) return;
-  bits = corner_bits(plain, corner);
-  key = bits.x * 0x9e3779b1u;
-  key = ((key ^ (key >> 15)) + bits.y) * 0x85ebca77u;
-  key = ((key ^ (key >> 13)) + bits.z) * 0xc2b2ae3du;
-  key ^= key >> 16;
-  pairs[corner] = (uint2)(key & key_mask, corner);
+  first = first_of[corner / 3u];
+  if (first != GN_NONE) places[corner] = gn_first_equal(triangles + first, corner - 3u * first);
 }
 
-// One work-item per pair, sorted by key: the first corner in leaf order with the same bits, and 1 for one that is
-// itself.
-__kernel void find_first_corners(__global const uint2* pairs, __global const uint* plain, __global uint* first_of,
-                                 __global uint* is_first, uint corner_count) {
+// One work-item per compact node: its head, and the words that it takes. places: see gn_measure_leaves.
+__kernel void measure_leaves(__global const GnPlainTriangle* triangles, __global const uint2* spans,
+                             __global uint* places, __global GnPackHead* heads, __global uint* words, uint node_count) {
   const uint index = (uint)get_global_id(0);
-  uint low = 0u, high = index, corner, first;
-  uint3 bits;
-  if (index >= corner_count) return;
-  corner = pairs[index].y;
-  bits = corner_bits(plain, corner);
-  while (low < high) {
-    const uint middle = low + (high - low) / 2u;
-    if (pairs[middle].x < pairs[index].x) {
-      low = middle + 1u;
-    } else {
-      high = middle;
-    }
+  if (index >= node_count) return;
+  {
+    const uint2 span = spans[index];
+    words[index] = span.y == 0u ? 0u
+                                : gn_measure_leaves(triangles + span.x, places + 3u * (size_t)span.x, span.y,
+                                                    heads + index);
   }
-  first = pairs[low].y;
-  while (low < index && !has_bits(plain, first, bits)) {
-    low += 1u;
-    first = pairs[low].y;
-  }
-  first_of[corner] = first;
-  is_first[corner] = first == corner ? 1u : 0u;
 }
 
-// One work-item per corner: the triangle's index of it, and the vertex if it is the first there. ranks: how many
-// corners before each are firsts.
-__kernel void write_corners(__global const uint* plain, __global const uint* first_of, __global const uint* ranks,
-                            __global uint* triangles, __global uint* vertices, uint corner_count) {
-  const uint corner = (uint)get_global_id(0);
-  const uint triangle = corner / 3u, place = corner % 3u;
-  uint rank;
-  if (corner >= corner_count) return;
-  rank = ranks[first_of[corner]];
-  triangles[4u * (size_t)triangle + place] = rank;
-  if (place == 0u) triangles[4u * (size_t)triangle + 3u] = plain[10u * (size_t)triangle + 9u];
-  if (first_of[corner] == corner) vstore3(corner_bits(plain, corner), rank, vertices);
+// One work-item per compact node: packs its triangles where the sum of all words before says.
+__kernel void write_leaves(__global const GnPlainTriangle* triangles, __global const uint2* spans,
+                           __global const uint* places, __global const GnPackHead* heads,
+                           __global const uint* words_before, __global GnCompactNode* nodes, __global uint* leaves,
+                           uint node_count) {
+  const uint index = (uint)get_global_id(0);
+  if (index >= node_count) return;
+  {
+    const uint2 span = spans[index];
+    if (span.y == 0u) return;
+    nodes[index].leaves = words_before[index];
+    gn_write_leaves(triangles + span.x, places + 3u * (size_t)span.x, span.y, heads + index,
+                    leaves + words_before[index]);
+  }
 }

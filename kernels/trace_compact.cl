@@ -1,8 +1,8 @@
 // Batched ray tracing over the compact tree, one ray per work-item, for GPUs: a node is five loads of 16 bytes, and of
 // a node's children that the ray meets all wait as one entry of the stack. Children are visited in the order of their
 // slots, turned by the octant of the ray's direction. A quantised box is made the float box it stands for and tested as
-// any other. Options: GN_GROUP_STACK (at least the tree's depth: each level leaves at most one group waiting),
-// GN_SHARED_CORNERS, GN_COUNTERS (walk.h).
+// any other. Options: GN_GROUP_STACK (at least the tree's depth: each level leaves at most one group waiting), GN_COUNTERS
+// (walk.h).
 // Source: Ylitie, Karras, Laine 2017 (node groups).
 #include "shared/compact_layout.h"
 #include "shared/hit_math.h"
@@ -10,35 +10,20 @@
 #ifndef GN_GROUP_STACK
 #define GN_GROUP_STACK 32
 #endif
-#ifndef GN_SHARED_CORNERS
-#define GN_SHARED_CORNERS 1
-#endif
 
-typedef struct GnLeaves {
-  __global const uint* triangles;
-  __global const float* vertices;
-} GnLeaves;
+typedef GnPackedLeaves GnLeaves;
 
-#define GN_SET_CORNER(corner, from) \
-  (corner)[0] = (from).x;           \
-  (corner)[1] = (from).y;           \
-  (corner)[2] = (from).z;
-
-static inline GnLeafTriangle leaf_triangle(const GnLeaves* leaves, uint place) {
+// index: among all triangles of the node.
+static inline GnLeafTriangle leaf_triangle(const GnLeaves* leaves, uint index) {
+  const GnPlainTriangle packed = gn_packed_triangle(leaves, index);
   GnLeafTriangle triangle;
-#if GN_SHARED_CORNERS
-  const uint4 links = vload4(place, leaves->triangles);
-  const float3 a = vload3(links.x, leaves->vertices), b = vload3(links.y, leaves->vertices),
-               c = vload3(links.z, leaves->vertices);
-  triangle.primitive = links.w;
-#else
-  __global const uint* words = leaves->triangles + 10u * (size_t)place;
-  const float3 a = as_float3(vload3(0, words)), b = as_float3(vload3(1, words)), c = as_float3(vload3(2, words));
-  triangle.primitive = words[9];
-#endif
-  GN_SET_CORNER(triangle.v0, a)
-  GN_SET_CORNER(triangle.v1, b)
-  GN_SET_CORNER(triangle.v2, c)
+  int k;
+  for (k = 0; k < 3; ++k) {
+    triangle.v0[k] = as_float(packed.corners[k]);
+    triangle.v1[k] = as_float(packed.corners[3 + k]);
+    triangle.v2[k] = as_float(packed.corners[6 + k]);
+  }
+  triangle.primitive = packed.number;
   return triangle;
 }
 
@@ -75,8 +60,8 @@ static inline uint met_slots(GnWalk* walk, const GnRayFrame* frame, float tmin, 
 
 static inline uint highest_bit(uint bits) { return 31u - clz(bits); }
 
-static inline void traverse_compact(GnWalk* walk, const GnRay* ray, __global const uint* nodes, const GnLeaves* leaves,
-                                    int any_hit) {
+static inline void traverse_compact(GnWalk* walk, const GnRay* ray, __global const uint* nodes,
+                                    __global const uint* packed, int any_hit) {
   const GnRayFrame frame = gn_ray_frame(ray);
   // Slots on the lower side of an axis that the ray goes up come first: as the highest bits.
   const uint turn = (frame.inverse[0] < 0.0f ? 0u : 1u) | (frame.inverse[1] < 0.0f ? 0u : 2u) |
@@ -88,6 +73,7 @@ static inline void traverse_compact(GnWalk* walk, const GnRay* ray, __global con
     uint slot, turned, leaves_met, counts[2];
     __global const uint* node;
     uint4 head, links;
+    GnLeaves leaves;
     if (visits == 0u) {
       if (height == 0u) return;
       height -= 1u;
@@ -112,30 +98,27 @@ static inline void traverse_compact(GnWalk* walk, const GnRay* ray, __global con
     slots = head.w >> 24;
     counts[0] = links.z;
     counts[1] = links.w;
+    if (leaves_met == 0u) continue;
+    leaves = gn_open_leaves(packed + links.y, gn_leaf_triangles(counts));
     while (leaves_met != 0u) {
       turned = highest_bit(leaves_met);
       leaves_met ^= 1u << turned;
       slot = turned ^ turn;
-      test_leaf(walk, &frame, ray, leaves, links.y + gn_bytes_before(counts, slot), gn_byte_of(counts, slot), any_hit);
+      test_leaf(walk, &frame, ray, &leaves, gn_bytes_before(counts, slot), gn_byte_of(counts, slot), any_hit);
       if (any_hit && walk->found) return;
     }
   }
 }
 
-#define GN_COMPACT_PARAMETERS(answer)                                                                            \
-  __global const uint *nodes, __global const uint *triangles, __global const float8 *rays, __global answer *answers, \
-      volatile __global uint *invalid_rays, __global GnRayCounters *counters, uint count,                        \
-      __global const float *vertices
+#define GN_COMPACT_PARAMETERS(answer)                                                                          \
+  __global const uint *nodes, __global const uint *packed, __global const float8 *rays, __global answer *answers, \
+      volatile __global uint *invalid_rays, __global GnRayCounters *counters, uint count
 
-static inline GnWalk walk_ray(__global const uint* nodes, __global const uint* triangles,
-                              __global const float* vertices, const GnRay* ray, volatile __global uint* invalid_rays,
-                              int any_hit) {
+static inline GnWalk walk_ray(__global const uint* nodes, __global const uint* packed, const GnRay* ray,
+                              volatile __global uint* invalid_rays, int any_hit) {
   GnWalk walk = start_walk(ray);
   if (gn_ray_is_valid(ray)) {
-    GnLeaves leaves;
-    leaves.triangles = triangles;
-    leaves.vertices = vertices;
-    traverse_compact(&walk, ray, nodes, &leaves, any_hit);
+    traverse_compact(&walk, ray, nodes, packed, any_hit);
   } else {
     atomic_inc(invalid_rays);
   }
@@ -154,7 +137,7 @@ __kernel void trace_closest(GN_COMPACT_PARAMETERS(float4)) {
   const uint index = (uint)get_global_id(0);
   if (index < count) {
     const GnRay ray = load_ray(rays, index);
-    const GnWalk walk = walk_ray(nodes, triangles, vertices, &ray, invalid_rays, 0);
+    const GnWalk walk = walk_ray(nodes, packed, &ray, invalid_rays, 0);
     answers[index] = (float4)(walk.best.t, walk.best.u, walk.best.v, as_float(walk.best.primitive));
     store_counters(counters, index, &walk);
   }
@@ -165,7 +148,7 @@ __kernel void trace_any(GN_COMPACT_PARAMETERS(uint)) {
   const uint index = (uint)get_global_id(0);
   if (index < count) {
     const GnRay ray = load_ray(rays, index);
-    const GnWalk walk = walk_ray(nodes, triangles, vertices, &ray, invalid_rays, 1);
+    const GnWalk walk = walk_ray(nodes, packed, &ray, invalid_rays, 1);
     answers[index] = walk.found;
     store_counters(counters, index, &walk);
   }

@@ -37,8 +37,7 @@ std::uint32_t step_limit_for(const cl::DeviceInfo& device, std::uint32_t wanted)
 
 std::string TracePlan::program_options() const {
   if (compact) {
-    return "-DGN_GROUP_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
-           " -DGN_SHARED_CORNERS=" + (shares_corners ? "1" : "0");
+    return "-DGN_GROUP_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0");
   }
   if (wide) {
     return "-DGN_WIDE_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
@@ -116,7 +115,6 @@ TracePlan plan_compact_trace(const cl::DeviceInfo& device, const TraceOptions& o
   plan.stack_size = (tree.depth + 15) / 16 * 16;
   plan.most_passes = 1;
   plan.compact = true;
-  plan.shares_corners = tree.shares_corners;
   return plan;
 }
 

@@ -23,7 +23,6 @@ struct TracePlan {
   bool counters = false;
   bool wide = false;
   bool compact = false;
-  bool shares_corners = false;  // of a compact tree
   bool portable = false;
   bool fast = false;    // Accuracy::kFast
   bool choose = false;  // packets where they pay, not wherever there are any

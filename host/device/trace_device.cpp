@@ -171,8 +171,7 @@ void Tracer::trace_compact(const DeviceCompactBvh& tree, const TraceOptions& opt
   plan_ = std::make_unique<TracePlan>(plan_compact_trace(context_.device(), options, tree));
   sort_ = sort_in<CompactNode>(context_, tree.nodes, options);
   nodes_ = tree.nodes.mem.get();
-  triangles_ = tree.triangles.mem.get();
-  vertices_ = tree.vertices.mem.get();
+  triangles_ = tree.leaves.mem.get();
   set_up("trace_compact.cl");
 }
 
@@ -199,7 +198,6 @@ cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, const 
                                      std::span<const cl_event> wait_for) const {
   cl::set_arguments(kernel.get(), nodes_, triangles_, launch.rays, launch.answers, invalid_, launch.counters,
                     launch.count);
-  if (plan_->compact) cl::set_arguments_from(kernel.get(), 7, vertices_);
   if (plan_->framed) cl::set_arguments_from(kernel.get(), 7, frame_);
   if (plan_->step_limit != 0) {
     cl::set_arguments_from(kernel.get(), 7, passes.states, passes.waiting, passes.entries, passes.paused,

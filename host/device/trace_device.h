@@ -147,7 +147,6 @@ class Tracer {
   DeviceCompactBvh compacted_;  // the same
   cl_mem nodes_ = nullptr;
   cl_mem triangles_ = nullptr;
-  cl_mem vertices_ = nullptr;  // of a compact tree
   std::unique_ptr<TracePlan> plan_;
   std::unique_ptr<RaySort> sort_;  // when rays are to be sorted
   bool sorts_closest_;             // those of closest hits, too

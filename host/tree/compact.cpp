@@ -3,7 +3,6 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstring>
@@ -31,13 +30,14 @@ class Compaction {
     }
     std::partial_sum(counts_before_.begin(), counts_before_.end(), counts_before_.begin());
     compact_.nodes.resize(wide.nodes.size());
-    compact_.plain.resize(triangles);
+    first_of_.resize(wide.nodes.size());
+    plain_.resize(triangles);
     compact_.depth = wide.depth;
   }
 
   CompactBvh run() {
     write(0, 0);
-    share_corners();
+    pack_leaves();
     return std::move(compact_);
   }
 
@@ -50,8 +50,8 @@ class Compaction {
     CompactNode out;
     gn_fill_compact_node(&node, wide_.leaves.data(), child_of, &out);
     const std::uint32_t first = gn_first_place(&node);
-    if (first != GN_NONE) out.first_triangle = first - counts_before_[first];
-    std::uint32_t next_triangle = out.first_triangle;
+    if (first != GN_NONE) first_of_[to] = first - counts_before_[first];
+    std::uint32_t next_triangle = first_of_[to];
     std::uint32_t next_node = out.first_node;
     for (const std::uint32_t child : child_of) {
       if (child == GN_NONE) continue;
@@ -72,38 +72,44 @@ class Compaction {
     for (std::uint32_t i = 0; i < leaf.count; ++i) {
       const std::uint32_t seat = gn_seat_in(leaf, i);
       const GnTriangle triangle = triangle_in(wide_, seat);
-      std::memcpy(compact_.plain[place + i].corners, &triangle, sizeof triangle);
-      compact_.plain[place + i].primitive = number_in(wide_, seat);
+      std::memcpy(plain_[place + i].corners, &triangle, sizeof triangle);
+      plain_[place + i].number = number_in(wide_, seat);
     }
     return place + leaf.count;
   }
 
-  void share_corners() {
-    std::map<std::array<std::uint32_t, 3>, std::uint32_t> places;
-    std::vector<GnIndexedTriangle> triangles(compact_.plain.size());
-    std::vector<GnVertex> vertices;
-    for (std::size_t i = 0; i < compact_.plain.size(); ++i) {
-      triangles[i].primitive = compact_.plain[i].primitive;
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        GnVertex vertex{};
-        std::memcpy(&vertex, compact_.plain[i].corners + 3 * corner, sizeof vertex);
-        std::array<std::uint32_t, 3> bits{};
-        std::memcpy(bits.data(), &vertex, sizeof vertex);
-        const auto [found, is_new] = places.try_emplace(bits, static_cast<std::uint32_t>(vertices.size()));
-        if (is_new) vertices.push_back(vertex);
-        triangles[i].corners[corner] = found->second;
-      }
+  void pack_leaves() {
+    for (std::size_t index = 0; index < compact_.nodes.size(); ++index) {
+      CompactNode& node = compact_.nodes[index];
+      const std::uint32_t count = gn_leaf_triangles(node.counts);
+      if (count == 0) continue;
+      const GnPlainTriangle* triangles = plain_.data() + first_of_[index];
+      std::vector<std::uint32_t> places = equal_corners(triangles, count);
+      GnPackHead head;
+      const std::uint32_t words = gn_measure_leaves(triangles, places.data(), count, &head);
+      node.leaves = static_cast<std::uint32_t>(compact_.leaves.size());
+      compact_.leaves.resize(compact_.leaves.size() + words);
+      gn_write_leaves(triangles, places.data(), count, &head, compact_.leaves.data() + node.leaves);
     }
-    if (gn_sharing_pays(static_cast<std::uint32_t>(triangles.size()),
-                        static_cast<std::uint32_t>(vertices.size())) == 0)
-      return;
-    compact_.triangles = std::move(triangles);
-    compact_.vertices = std::move(vertices);
-    compact_.plain.clear();
+    compact_.leaves.push_back(0);
+  }
+
+  // For each corner the first that equals it.
+  static std::vector<std::uint32_t> equal_corners(const GnPlainTriangle* triangles, std::uint32_t count) {
+    std::map<std::array<std::uint32_t, 3>, std::uint32_t> first_with;
+    std::vector<std::uint32_t> first(std::size_t{3} * count);
+    for (std::uint32_t corner = 0; corner < first.size(); ++corner) {
+      std::array<std::uint32_t, 3> bits{};
+      std::memcpy(bits.data(), triangles[corner / 3].corners + std::size_t{3} * (corner % 3), sizeof bits);
+      first[corner] = first_with.try_emplace(bits, corner).first->second;
+    }
+    return first;
   }
 
   const WideBvh& wide_;
   std::vector<std::uint32_t> counts_before_;  // places before each that hold a long leaf's count instead
+  std::vector<std::uint32_t> first_of_;       // the first triangle of each compact node
+  std::vector<GnPlainTriangle> plain_;
   CompactBvh compact_;
 };
 
@@ -128,9 +134,7 @@ std::string tree_hash(const CompactBvh& compact) {
     if (!values.empty()) XXH3_64bits_update(&state, values.data(), values.size() * sizeof values[0]);
   };
   add(compact.nodes);
-  add(compact.triangles);
-  add(compact.vertices);
-  add(compact.plain);
+  add(compact.leaves);
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(XXH3_64bits_digest(&state)));
   return text;

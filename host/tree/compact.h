@@ -1,4 +1,4 @@
-// The compact tree as a value: the wide tree with quantised boxes and shared corners, for traversal on
+// The compact tree as a value: the wide tree with quantised boxes and packed triangles, for traversal on
 // devices where memory traffic decides. Not for building or collapsing. Feeds the device conversion's tests,
 // statistics.
 #pragma once
@@ -17,19 +17,15 @@ namespace gnomon {
 
 using CompactNode = GnCompactNode;
 
-// The root is node 0; an empty scene has it without children. Either triangles and vertices are filled, or
-// plain is: whichever takes less memory. Vertices are in order of the first corner, in leaf order, that lies
-// there.
+// The root is node 0; an empty scene has it without children.
 struct CompactBvh {
   std::vector<CompactNode> nodes;
-  std::vector<GnIndexedTriangle> triangles;
-  std::vector<GnVertex> vertices;
-  std::vector<GnPlainTriangle> plain;
+  // The triangles (gnomon/shared/packed_leaves.h), in order of nodes, and a word of 0 behind.
+  std::vector<std::uint32_t> leaves;
   std::uint32_t depth = 0;  // nodes on the longest way from the root to a leaf
   // Of all that traversal reads.
   [[nodiscard]] std::uint64_t bytes() const {
-    return nodes.size() * sizeof(CompactNode) + triangles.size() * sizeof(GnIndexedTriangle) +
-           vertices.size() * sizeof(GnVertex) + plain.size() * sizeof(GnPlainTriangle);
+    return nodes.size() * sizeof(CompactNode) + leaves.size() * sizeof(std::uint32_t);
   }
 };
 
@@ -39,13 +35,13 @@ struct CompactBvh {
 
 [[noreturn]] void throw_compact_leaf_too_large(std::uint32_t triangles);
 
-// The first broken promise, or nothing: nodes, triangles and vertices in range and each reached once, in
-// order; boxes, as traversal computes them, that hold every triangle below; every triangle once with its
-// corners; vertices distinct and in order; the smaller of both forms; depth. Any bytes may come in.
+// The first broken promise, or nothing: nodes in range and each reached once; leaves that follow each other
+// in order of nodes and take the fewest words they can; boxes, as traversal computes them, that hold every
+// triangle below; every triangle once with its corners; depth. Any bytes may come in.
 [[nodiscard]] std::optional<BvhFault> check_compact(const CompactBvh& compact,
                                                     std::span<const GnTriangle> triangles);
 
-// XXH3-64 of nodes, triangles, vertices and plain triangles, 16 hex digits.
+// XXH3-64 of nodes and leaves, 16 hex digits.
 [[nodiscard]] std::string tree_hash(const CompactBvh& compact);
 
 }  // namespace gnomon

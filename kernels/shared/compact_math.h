@@ -106,7 +106,7 @@ GN_INLINE void gn_assign_slots(GN_WIDE_SPACE const GnWideNode* node, gn_u32* chi
 
 GN_INLINE int gn_is_leaf_link(gn_u32 link) { return (link & GN_LEAF_LINK) != 0u; }
 
-// Everything of the compact node but where its triangles begin. Children of a wide node that are nodes have
+// Everything of the compact node but where its triangles are packed. Children of a wide node that are nodes have
 // neighbouring numbers; the least is where their compact nodes go, in order of slots.
 GN_INLINE void gn_fill_compact_node(GN_WIDE_SPACE const GnWideNode* node, GN_GLOBAL const gn_u32* leaves,
                                     const gn_u32* child_of, GnCompactNode* out) {
@@ -115,7 +115,7 @@ GN_INLINE void gn_fill_compact_node(GN_WIDE_SPACE const GnWideNode* node, GN_GLO
   int k;
   out->scales = 0u;
   out->first_node = GN_NONE;
-  out->first_triangle = 0u;
+  out->leaves = 0u;
   for (k = 0; k < 2; ++k) out->counts[k] = 0u;
   for (k = 0; k < 12; ++k) out->planes[k / 2][k % 2] = 0u;
   gn_wide_bounds(node, lo, hi);

@@ -185,24 +185,76 @@ TEST_CASE("children get the slots of their octants") {
   for (std::uint32_t slot = 0; slot < 8; ++slot) REQUIRE(child_of[slot] * 5 % 8 == slot);
 }
 
-TEST_CASE("corners are shared where that is smaller, and stay apart bit for bit") {
-  const auto grid = gnomon::test::grid(20, 2.0F);
-  const CompactBvh shared = gnomon::compact_reference(wide_of(grid));
-  REQUIRE(shared.plain.empty());
-  REQUIRE(shared.vertices.size() == 21 * 21);
-  REQUIRE(shared.bytes() == shared.nodes.size() * 80 + grid.size() * 16 + shared.vertices.size() * 12);
-  REQUIRE(static_cast<double>(shared.bytes()) / static_cast<double>(grid.size()) <= 36.0);
+TEST_CASE("equal corners are stored once where that is smaller, and stay apart bit for bit") {
+  // One node: fields are as wide as the differences of its keys, numbers and places.
+  const auto fields_of = [](const CompactBvh& compact, std::uint32_t column) {
+    return gn_pack_width(compact.leaves[compact.nodes[0].leaves], column);
+  };
+  const std::vector<GnTriangle> quad{gnomon::test::triangle({1, 1, 1}, {1.5, 1, 1}, {1, 1.5, 1}),
+                                     gnomon::test::triangle({1.5, 1.5, 1}, {1, 1.5, 1}, {1.5, 1, 1})};
+  const CompactBvh shared = gnomon::compact_reference(wide_of(quad));
+  REQUIRE(shared.nodes.size() == 1);
+  REQUIRE(fields_of(shared, 0) == 23);  // 1 and 1.5 are half of 2^23 floats apart
+  REQUIRE(fields_of(shared, 1) == 23);
+  REQUIRE(fields_of(shared, 2) == 0);
+  REQUIRE(fields_of(shared, GN_NUMBER_COLUMN) == 1);
+  REQUIRE(fields_of(shared, GN_PLACE_COLUMN) == 2);
+  // 2 triangles of 3 * 2 + 1 bits and 4 vertices of 46: 198 bits.
+  REQUIRE(shared.leaves.size() == 5 + 7 + 1);
 
-  const auto soup = gnomon::test::soup(100, 613);
-  const CompactBvh apart = gnomon::compact_reference(wide_of(soup));
-  REQUIRE(apart.vertices.empty());
-  REQUIRE(apart.plain.size() == 100);
-  REQUIRE(apart.bytes() == apart.nodes.size() * 80 + 100 * 40);
+  // Zeros of both signs are neighbours among floats, and two positions.
+  std::vector<GnTriangle> zeros = quad;
+  zeros[0].v0[2] = -0.0F;
+  zeros[1].v1[2] = 0.0F;
+  const CompactBvh signs = gnomon::compact_reference(wide_of(zeros));
+  REQUIRE(!gnomon::check_compact(signs, zeros));
+  REQUIRE(gn_pack_key(gn_bits_of(0.0F)) == gn_pack_key(gn_bits_of(-0.0F)) + 1);
+}
 
-  // Zeros of both signs are two positions.
-  const std::vector<GnTriangle> zeros{gnomon::test::triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}),
-                                      gnomon::test::triangle({-0.0F, 0, 0}, {1, 0, 0}, {0, 1, 0})};
-  REQUIRE(gnomon::compact_reference(wide_of(zeros)).vertices.size() == 4);
+TEST_CASE("meshes and soups take few bytes a triangle") {
+  const auto bytes_per_triangle = [](const std::vector<GnTriangle>& triangles) {
+    const CompactBvh compact = gnomon::compact_reference(wide_of(triangles));
+    REQUIRE(!gnomon::check_compact(compact, triangles));
+    REQUIRE(compact.bytes() == compact.nodes.size() * 80 + compact.leaves.size() * 4);
+    return static_cast<double>(compact.bytes()) / static_cast<double>(triangles.size());
+  };
+  REQUIRE(bytes_per_triangle(gnomon::test::grid(20, 2.0F)) < 20.0);
+  REQUIRE(bytes_per_triangle(gnomon::test::soup(3000, 613)) <= 36.0);
+}
+
+TEST_CASE("an integer stands for each float, in the floats' order, and gives its bits back") {
+  std::vector<float> rising{-INFINITY, -3e38F, -1.0F, -1e-45F, -0.0F, 0.0F, 1e-45F, 1e-38F, 1.0F, INFINITY};
+  for (std::size_t i = 0; i < rising.size(); ++i) {
+    const std::uint32_t key = gn_pack_key(gn_bits_of(rising[i]));
+    REQUIRE(gn_unpack_key(key) == gn_bits_of(rising[i]));
+    if (i > 0) REQUIRE(gn_pack_key(gn_bits_of(rising[i - 1])) < key);
+  }
+}
+
+TEST_CASE("fields of any width come back from any bit") {
+  Random random(614);
+  const auto any = [&random](std::uint32_t width) {
+    std::uint32_t value = 0;
+    for (std::uint32_t bit = 0; bit < width; ++bit) value |= random.below(2) << bit;
+    return value;
+  };
+  for (int round = 0; round < 200; ++round) {
+    std::vector<std::uint32_t> words(80, 0);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> fields;  // width and value
+    GnFieldWriter to{words.data(), 0, 0};
+    for (int i = 0; i < 70; ++i) {
+      const std::uint32_t width = random.below(8) == 0 ? 32 : random.below(33);
+      fields.emplace_back(width, any(width));
+      gn_append(&to, fields.back().second, width);
+    }
+    if (to.used != 0) *to.next = to.word;
+    std::uint32_t bit = 0;
+    for (const auto& [width, value] : fields) {
+      CAPTURE(round, bit, width);
+      REQUIRE(gn_field_at(words.data(), bit, width) == value);
+      bit += width;
+    }
+  }
 }
 
 TEST_CASE("a leaf of 256 triangles is refused, one of 255 is not") {
@@ -216,15 +268,14 @@ TEST_CASE("a leaf of 256 triangles is refused, one of 255 is not") {
     for (std::uint32_t i = 0; i < count; ++i) bvh.primitives.push_back(i);
     return gnomon::collapse_reference(bvh, std::span(triangles).first(count));
   };
-  REQUIRE(gnomon::compact_reference(single_leaf(255)).triangles.size() == 255);
+  REQUIRE(
+      !gnomon::check_compact(gnomon::compact_reference(single_leaf(255)), std::span(triangles).first(255)));
   REQUIRE_THROWS_WITH(gnomon::compact_reference(single_leaf(256)), Catch::Contains("leaf of 256 triangles"));
 }
 
-TEST_CASE("sums of bytes and the choice of form") {
+TEST_CASE("sums of bytes") {
   const std::uint32_t bytes[2] = {0xff030201U, 0x0807ffffU};
   const std::uint32_t sums[8] = {0, 1, 3, 6, 261, 516, 771, 778};
   for (std::uint32_t slot = 0; slot < 8; ++slot) REQUIRE(gn_bytes_before(bytes, slot) == sums[slot]);
-  REQUIRE(gn_sharing_pays(5, 10) == 1);
-  REQUIRE(gn_sharing_pays(5, 11) == 0);
-  REQUIRE(gn_sharing_pays(0, 0) == 1);
+  REQUIRE(gn_leaf_triangles(bytes) == 786);
 }

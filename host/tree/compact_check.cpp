@@ -75,7 +75,7 @@ class BitReader {
   std::uint64_t bit_;
 };
 
-using Keys = std::array<std::uint32_t, 3>;  // of a corner, in the floats' order
+using Keys = std::array<std::int32_t, 3>;  // of a corner, in the floats' order
 
 // What one node's leaves say.
 struct NodeLeaves {
@@ -86,8 +86,9 @@ struct NodeLeaves {
   std::vector<Keys> vertices;
 };
 
-float position_of(std::uint32_t key) {
-  return std::bit_cast<float>((key >> 31) != 0 ? key - 0x80000000U : ~key);
+// Floats below 0, -0 the first of them, count down from -1.
+float position_of(std::int32_t key) {
+  return key >= 0 ? std::bit_cast<float>(key) : -std::bit_cast<float>(-1 - key);
 }
 
 class Check {
@@ -149,7 +150,8 @@ class Check {
     }
     for (std::uint32_t vertex = 0; vertex < used; ++vertex) {
       Keys keys{};
-      for (std::size_t k = 0; k < 3; ++k) keys[k] = leaves.least[k] + reader.read(leaves.widths[k]);
+      for (std::size_t k = 0; k < 3; ++k)
+        keys[k] = static_cast<std::int32_t>(leaves.least[k] + reader.read(leaves.widths[k]));
       leaves.vertices.push_back(keys);
     }
     if (!reader.finish()) return fault("leaves: bits are set behind the last field", index);
@@ -173,7 +175,8 @@ class Check {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [low, high] = std::minmax_element(leaves.vertices.begin(), leaves.vertices.end(),
                                                    [k](const Keys& a, const Keys& b) { return a[k] < b[k]; });
-      if (misfit(k, (*low)[k], (*high)[k])) return fault("leaves: corners could be narrower", index);
+      if (misfit(k, static_cast<std::uint32_t>((*low)[k]), static_cast<std::uint32_t>((*high)[k])))
+        return fault("leaves: corners could be narrower", index);
     }
     const std::set<Keys> distinct(leaves.vertices.begin(), leaves.vertices.end());
     const std::size_t corners = leaves.corners.size();

@@ -33,29 +33,10 @@ GN_SIZE_IS(GnPlainTriangle, 40);
 // Nodes of more triangles than this share no corners: looking for them grows with the square.
 #define GN_MOST_SHARING 85u
 
-// An integer that is greater where the float of these bits is; -0 is below 0. And back.
-GN_INLINE gn_u32 gn_pack_key(gn_u32 bits) {
-  return bits ^ ((bits & 0x80000000u) != 0u ? 0xffffffffu : 0x80000000u);
-}
-GN_INLINE gn_u32 gn_unpack_key(gn_u32 key) { return key ^ ((key & 0x80000000u) != 0u ? 0x80000000u : 0xffffffffu); }
+// For the bits of a float an integer that, signed, is greater where the float is, -0 below 0; for that integer the bits.
+GN_INLINE gn_u32 gn_pack_key(gn_u32 bits) { return bits ^ ((gn_u32)((gn_i32)bits >> 31) & 0x7fffffffu); }
 
 GN_INLINE gn_u32 gn_pack_width(gn_u32 widths, gn_u32 column) { return (widths >> (6u * column)) & 63u; }
-
-// The field of `width` bits, at most 32, that begins at this bit. Reads the word after the field too.
-GN_INLINE gn_u32 gn_field_at(GN_GLOBAL const gn_u32* fields, gn_u32 bit, gn_u32 width) {
-  const gn_u32 low = fields[bit >> 5], high = fields[(bit >> 5) + 1u], shift = bit & 31u;
-  const gn_u32 mask = ((1u << (width & 31u)) - 1u) | (0u - (width >> 5));
-  return ((low >> shift) | ((high << 1) << (31u - shift))) & mask;
-}
-
-// A node's leaves, ready to be read: the bits that a triangle and a vertex take, and the bit where vertices begin.
-typedef struct GnPackedLeaves {
-  GN_GLOBAL const gn_u32* fields;
-  GnPackHead head;
-  gn_u32 triangle_bits;
-  gn_u32 vertex_bits;
-  gn_u32 vertices;
-} GnPackedLeaves;
 
 GN_INLINE gn_u32 gn_triangle_bits(gn_u32 widths) {
   return 3u * gn_pack_width(widths, GN_PLACE_COLUMN) + gn_pack_width(widths, GN_NUMBER_COLUMN);
@@ -64,39 +45,73 @@ GN_INLINE gn_u32 gn_vertex_bits(gn_u32 widths) {
   return gn_pack_width(widths, 0u) + gn_pack_width(widths, 1u) + gn_pack_width(widths, 2u);
 }
 
+// The lowest `width` bits, at most 32.
+GN_INLINE gn_u32 gn_field_mask(gn_u32 width) { return ((1u << (width & 31u)) - 1u) | (0u - (width >> 5)); }
+
+// A field of a mask's width that begins at this bit. Reads the word after it too. On x86 one load of 64 bits.
+GN_INLINE gn_u32 gn_field_at(GN_GLOBAL const gn_u32* fields, gn_u32 bit, gn_u32 mask) {
+#ifdef __OPENCL_VERSION__
+  const uint2 words = vload2(0, fields + (bit >> 5));
+  return (gn_u32)(upsample(words.y, words.x) >> (bit & 31u)) & mask;
+#else
+  const std::uint64_t low = fields[bit >> 5], high = fields[(bit >> 5) + 1u];
+  return static_cast<gn_u32>((high << 32 | low) >> (bit & 31u)) & mask;
+#endif
+}
+
+// A node's leaves, ready to be read: bits that a triangle and a vertex take, the bit where vertices begin, and of each
+// column what gn_field_at needs.
+typedef struct GnPackedLeaves {
+  GN_GLOBAL const gn_u32* fields;
+  gn_u32 triangle_bits;
+  gn_u32 vertex_bits;
+  gn_u32 vertices;
+  gn_u32 place_width;
+  gn_u32 y;  // bits from a vertex to its y
+  gn_u32 z;
+  gn_u32 masks[5];
+  gn_u32 least[4];
+} GnPackedLeaves;
+
 // words: where the node's head is. count: triangles in all its leaves.
 GN_INLINE GnPackedLeaves gn_open_leaves(GN_GLOBAL const gn_u32* words, gn_u32 count) {
+  const gn_u32 widths = words[0];
   GnPackedLeaves leaves;
   int k;
   leaves.fields = words + GN_PACK_HEAD_WORDS;
-  leaves.head.widths = words[0];
-  for (k = 0; k < 4; ++k) leaves.head.least[k] = words[1 + k];
-  leaves.triangle_bits = gn_triangle_bits(leaves.head.widths);
-  leaves.vertex_bits = gn_vertex_bits(leaves.head.widths);
+  leaves.triangle_bits = gn_triangle_bits(widths);
+  leaves.vertex_bits = gn_vertex_bits(widths);
   leaves.vertices = count * leaves.triangle_bits;
+  leaves.place_width = gn_pack_width(widths, GN_PLACE_COLUMN);
+  leaves.y = gn_pack_width(widths, 0u);
+  leaves.z = leaves.y + gn_pack_width(widths, 1u);
+  for (k = 0; k < 5; ++k) leaves.masks[k] = gn_field_mask(gn_pack_width(widths, (gn_u32)k));
+  for (k = 0; k < 4; ++k) leaves.least[k] = words[1 + k];
   return leaves;
+}
+
+GN_INLINE gn_u32 gn_packed_value(const GnPackedLeaves* leaves, gn_u32 column, gn_u32 bit) {
+  return leaves->least[column] + gn_field_at(leaves->fields, bit, leaves->masks[column]);
+}
+
+// Without a loop: compilers keep it, and the three fields wait for each other.
+GN_INLINE void gn_packed_vertex(const GnPackedLeaves* leaves, gn_u32 place, gn_u32* out) {
+  const gn_u32 x = leaves->vertices + place * leaves->vertex_bits;
+  out[0] = gn_pack_key(gn_packed_value(leaves, 0u, x));
+  out[1] = gn_pack_key(gn_packed_value(leaves, 1u, x + leaves->y));
+  out[2] = gn_pack_key(gn_packed_value(leaves, 2u, x + leaves->z));
 }
 
 // The triangle that is the index-th of the node, in order of slots.
 GN_INLINE GnPlainTriangle gn_packed_triangle(const GnPackedLeaves* leaves, gn_u32 index) {
-  const gn_u32 widths = leaves->head.widths, places = gn_pack_width(widths, GN_PLACE_COLUMN);
-  const gn_u32 record = index * leaves->triangle_bits;
-  const gn_u32 all_places = gn_field_at(leaves->fields, record, 3u * places);
+  const gn_u32 record = index * leaves->triangle_bits, width = leaves->place_width;
+  const gn_u32 mask = leaves->masks[GN_PLACE_COLUMN];
+  const gn_u32 places = gn_field_at(leaves->fields, record, 0xffffffffu);
   GnPlainTriangle out;
-  gn_u32 corner, axis;
-  for (corner = 0u; corner < 3u; ++corner) {
-    const gn_u32 place =
-        places == 0u ? 3u * index + corner : (all_places >> (corner * places)) & ((1u << places) - 1u);
-    gn_u32 bit = leaves->vertices + place * leaves->vertex_bits;
-    for (axis = 0u; axis < 3u; ++axis) {
-      const gn_u32 width = gn_pack_width(widths, axis);
-      out.corners[3u * corner + axis] =
-          gn_unpack_key(leaves->head.least[axis] + gn_field_at(leaves->fields, bit, width));
-      bit += width;
-    }
-  }
-  out.number = leaves->head.least[GN_NUMBER_COLUMN] +
-               gn_field_at(leaves->fields, record + 3u * places, gn_pack_width(widths, GN_NUMBER_COLUMN));
+  gn_packed_vertex(leaves, width == 0u ? 3u * index : places & mask, out.corners);
+  gn_packed_vertex(leaves, width == 0u ? 3u * index + 1u : (places >> width) & mask, out.corners + 3);
+  gn_packed_vertex(leaves, width == 0u ? 3u * index + 2u : (places >> (2u * width)) & mask, out.corners + 6);
+  out.number = gn_packed_value(leaves, GN_NUMBER_COLUMN, record + 3u * width);
   return out;
 }
 
@@ -117,19 +132,23 @@ GN_INLINE gn_u32 gn_first_equal(GN_GLOBAL const GnPlainTriangle* triangles, gn_u
   return other;
 }
 
+// Numbers are compared without sign, keys with it.
+GN_INLINE int gn_is_before(gn_u32 a, gn_u32 b, gn_u32 column) {
+  return column == GN_NUMBER_COLUMN ? a < b : (gn_i32)a < (gn_i32)b;
+}
+
 // The head of a node of `count` triangles, and how many words it takes with its fields. places: for each corner the
 // first that equals it, or anything in nodes of more than GN_MOST_SHARING; receives its place among the vertices.
 GN_INLINE gn_u32 gn_measure_leaves(GN_GLOBAL const GnPlainTriangle* triangles, GN_GLOBAL gn_u32* places, gn_u32 count,
                                    GN_GLOBAL GnPackHead* head) {
-  gn_u32 least[4] = {0xffffffffu, 0xffffffffu, 0xffffffffu, 0xffffffffu}, most[4] = {0u, 0u, 0u, 0u};
-  gn_u32 vertices = 0u, widths = 0u, shared, apart, place_width, corner, column;
+  gn_u32 least[4], most[4], vertices = 0u, widths = 0u, shared, apart, place_width, corner, column;
   for (corner = 0u; corner < 3u * count; ++corner) {
     for (column = 0u; column < 4u; ++column) {
       const gn_u32 value = column == GN_NUMBER_COLUMN
                                ? triangles[corner / 3u].number
                                : gn_pack_key(triangles[corner / 3u].corners[3u * (corner % 3u) + column]);
-      least[column] = value < least[column] ? value : least[column];
-      most[column] = value > most[column] ? value : most[column];
+      if (corner == 0u || gn_is_before(value, least[column], column)) least[column] = value;
+      if (corner == 0u || gn_is_before(most[column], value, column)) most[column] = value;
     }
     if (count > GN_MOST_SHARING || places[corner] == corner) {
       places[corner] = vertices;

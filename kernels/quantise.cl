@@ -107,7 +107,8 @@ __kernel void measure_leaves(__global const GnPlainTriangle* triangles, __global
   }
 }
 
-// One work-item per compact node: packs its triangles where the sum of all words before says.
+// One work-item per compact node: packs its triangles where the sum of all words before says. The first also writes the
+// word behind them all: readers take two at a time.
 __kernel void write_leaves(__global const GnPlainTriangle* triangles, __global const uint2* spans,
                            __global const uint* places, __global const GnPackHead* heads,
                            __global const uint* words_before, __global GnCompactNode* nodes, __global uint* leaves,
@@ -116,6 +117,7 @@ __kernel void write_leaves(__global const GnPlainTriangle* triangles, __global c
   if (index >= node_count) return;
   {
     const uint2 span = spans[index];
+    if (index == 0u) leaves[words_before[node_count]] = 0u;
     if (span.y == 0u) return;
     nodes[index].leaves = words_before[index];
     gn_write_leaves(triangles + span.x, places + 3u * (size_t)span.x, span.y, heads + index,

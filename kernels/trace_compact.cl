@@ -99,7 +99,7 @@ static inline void traverse_compact(GnWalk* walk, const GnRay* ray, __global con
     counts[0] = links.z;
     counts[1] = links.w;
     if (leaves_met == 0u) continue;
-    leaves = gn_open_leaves(packed + links.y, gn_leaf_triangles(counts));
+    gn_open_leaves(packed + links.y, gn_leaf_triangles(counts), &leaves);
     while (leaves_met != 0u) {
       turned = highest_bit(leaves_met);
       leaves_met ^= 1u << turned;

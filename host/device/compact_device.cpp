@@ -90,8 +90,6 @@ class Compactor {
         context_.download_values<std::uint32_t>(words_before, 1, wide_.node_count).front();
     out_.word_count = all + 1;
     out_.leaves = words("packed_leaves", out_.word_count);
-    const std::uint32_t behind = 0;  // readers take two words at a time
-    context_.upload_values<std::uint32_t>(out_.leaves, std::span(&behind, 1), all);
     launch("write_leaves", wide_.node_count, plain_, spans_, places, heads, words_before, out_.nodes,
            out_.leaves);
     // The driver keeps what kernels read alive until they are done.

@@ -52,7 +52,7 @@ GN_INLINE gn_u32 gn_field_mask(gn_u32 width) { return ((1u << (width & 31u)) - 1
 GN_INLINE gn_u32 gn_field_at(GN_GLOBAL const gn_u32* fields, gn_u32 bit, gn_u32 mask) {
 #ifdef __OPENCL_VERSION__
   const uint2 words = vload2(0, fields + (bit >> 5));
-  return (gn_u32)(upsample(words.y, words.x) >> (bit & 31u)) & mask;
+  return (gn_u32)((((ulong)words.y << 32) | words.x) >> (bit & 31u)) & mask;
 #else
   const std::uint64_t low = fields[bit >> 5], high = fields[(bit >> 5) + 1u];
   return static_cast<gn_u32>((high << 32 | low) >> (bit & 31u)) & mask;
@@ -74,20 +74,18 @@ typedef struct GnPackedLeaves {
 } GnPackedLeaves;
 
 // words: where the node's head is. count: triangles in all its leaves.
-GN_INLINE GnPackedLeaves gn_open_leaves(GN_GLOBAL const gn_u32* words, gn_u32 count) {
+GN_INLINE void gn_open_leaves(GN_GLOBAL const gn_u32* words, gn_u32 count, GnPackedLeaves* leaves) {
   const gn_u32 widths = words[0];
-  GnPackedLeaves leaves;
   int k;
-  leaves.fields = words + GN_PACK_HEAD_WORDS;
-  leaves.triangle_bits = gn_triangle_bits(widths);
-  leaves.vertex_bits = gn_vertex_bits(widths);
-  leaves.vertices = count * leaves.triangle_bits;
-  leaves.place_width = gn_pack_width(widths, GN_PLACE_COLUMN);
-  leaves.y = gn_pack_width(widths, 0u);
-  leaves.z = leaves.y + gn_pack_width(widths, 1u);
-  for (k = 0; k < 5; ++k) leaves.masks[k] = gn_field_mask(gn_pack_width(widths, (gn_u32)k));
-  for (k = 0; k < 4; ++k) leaves.least[k] = words[1 + k];
-  return leaves;
+  leaves->fields = words + GN_PACK_HEAD_WORDS;
+  leaves->triangle_bits = gn_triangle_bits(widths);
+  leaves->vertex_bits = gn_vertex_bits(widths);
+  leaves->vertices = count * leaves->triangle_bits;
+  leaves->place_width = gn_pack_width(widths, GN_PLACE_COLUMN);
+  leaves->y = gn_pack_width(widths, 0u);
+  leaves->z = leaves->y + gn_pack_width(widths, 1u);
+  for (k = 0; k < 5; ++k) leaves->masks[k] = gn_field_mask(gn_pack_width(widths, (gn_u32)k));
+  for (k = 0; k < 4; ++k) leaves->least[k] = words[1 + k];
 }
 
 GN_INLINE gn_u32 gn_packed_value(const GnPackedLeaves* leaves, gn_u32 column, gn_u32 bit) {

@@ -106,7 +106,8 @@ std::string fault_of_other(bool apart,
     for (auto& node : s.compact.nodes) {
       const std::uint32_t count = gn_leaf_triangles(node.counts);
       if (count == 0) continue;
-      const GnPackedLeaves leaves = gn_open_leaves(s.compact.leaves.data() + node.leaves, count);
+      GnPackedLeaves leaves;
+      gn_open_leaves(s.compact.leaves.data() + node.leaves, count, &leaves);
       std::vector<GnPlainTriangle> plain;
       for (std::uint32_t i = 0; i < count; ++i) plain.push_back(gn_packed_triangle(&leaves, i));
       std::vector<std::uint32_t> places;

@@ -198,8 +198,8 @@ static inline void test_block(GnWideWalk* walk, const GnWideRay* ray, __global c
     const float8 spread = GN_MAX8(GN_MAX8(az, bz), cz) - GN_MIN8(GN_MIN8(az, bz), cz);
     const float8 inverse = (float8)frame->inverse[kz];
     const float8 error = GN_FAST ? (float8)0.0f
-                                 : ((4.0f * bound * spread + GN_MET_UNDERFLOW) * fabs(share) + GN_SLAB_SLACK * z +
-                                    GN_MET_UNDERFLOW) *
+                                 : ((GN_MET_SPREADS * bound * spread + GN_MET_UNDERFLOW) * fabs(share) +
+                                    GN_SLAB_SLACK * z + GN_MET_UNDERFLOW) *
                                            fabs(inverse) +
                                        GN_MET_UNDERFLOW;
     const float8 t = (u * share * az + v * share * bz + w * share * cz) * inverse;

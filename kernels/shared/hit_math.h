@@ -72,14 +72,16 @@ GN_INLINE int gn_triangle_filter(const GnRayFrame* ray, const gn_f32* v0, const 
 
 // What floats alone say of a triangle that gn_triangle_filter calls certainly inside (u, v, w are its edge functions, all
 // of one sign and beyond bound): where along the ray it is met, and by how much that may be wrong. t is a mean of the
-// corners' distances with weights u, v, w: errors of the weights, at most bound each, move it by no more than
-// 3 bound / |u + v + w| of the distances' spread; rounding by less than 2^-19 of the largest distance z; underflow by
-// less than 1e-37 before each multiplication.
+// corners' distances with weights u, v, w. Where T is the mean with the true weights, t - T is the sum of the weights'
+// errors, at most bound each, times how far each corner is from T, over u + v + w; T lies between the corners, so those
+// three are no farther than two spreads together, and with what rounding adds it is GN_MET_SPREADS. Rounding moves t by
+// less than 2^-19 of the largest distance z, underflow by less than 1e-37 before each multiplication.
+#define GN_MET_SPREADS 2.0625f
 GN_INLINE gn_f32 gn_met_at(gn_f32 az, gn_f32 bz, gn_f32 cz, gn_f32 u, gn_f32 v, gn_f32 w, gn_f32 bound, gn_f32 z,
                            gn_f32 inverse, gn_f32* error) {
   const gn_f32 share = 1.0f / (u + v + w);
   const gn_f32 spread = gn_max(gn_max(az, bz), cz) - gn_min(gn_min(az, bz), cz);
-  *error = ((4.0f * bound * spread + GN_MET_UNDERFLOW) * gn_abs(share) + GN_SLAB_SLACK * z + GN_MET_UNDERFLOW) *
+  *error = ((GN_MET_SPREADS * bound * spread + GN_MET_UNDERFLOW) * gn_abs(share) + GN_SLAB_SLACK * z + GN_MET_UNDERFLOW) *
                gn_abs(inverse) +
            GN_MET_UNDERFLOW;
   return (u * share * az + v * share * bz + w * share * cz) * inverse;

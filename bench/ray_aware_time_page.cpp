@@ -75,6 +75,10 @@ struct Ratios {
     counts.push_back(own.at("cost").get<double>() / other.at("cost").get<double>());
     times.push_back(median(own, time));
   }
+  void add(const Ratios& others) {
+    counts.insert(counts.end(), others.counts.begin(), others.counts.end());
+    times.insert(times.end(), others.times.begin(), others.times.end());
+  }
   [[nodiscard]] std::string means() const {
     return std::string(" ") + number(geomean(counts), "%.3f") + " | " + number(geomean(times), "%.3f") + " |";
   }
@@ -169,9 +173,16 @@ class Page {
         "binary "
         "tree. sah: the plan's baseline; balanced: what is\nbuilt without a plan. Hits that differ: " +
         std::to_string(different_) + ".\n";
+    Ratios of_sah, of_balanced;
     for (const std::string& size : sizes_) {
-      for (const char* const query : {"closest", "any"}) out += savings(query, size);
+      for (const char* const query : {"closest", "any"}) out += savings(query, size, of_sah, of_balanced);
     }
+    out +=
+        "\n## All of them\n\n| set-ups | counts of sah | time of sah | counts of balanced | time of balanced "
+        "|\n"
+        "|---|---|---|---|---|\n| " +
+        std::to_string(of_sah.counts.size()) + " |" + of_sah.means() + of_balanced.means() +
+        shares(of_sah, of_balanced);
     out +=
         "\n## Time predicted\n\nNanoseconds a ray: what any ray of its kind takes, and so much a node and a "
         "block of "
@@ -194,7 +205,14 @@ class Page {
            number(s.at("max"), "%.2f") + ")";
   }
 
-  [[nodiscard]] std::string savings(const std::string& query, const std::string& size) const {
+  [[nodiscard]] static std::string shares(const Ratios& of_sah, const Ratios& of_balanced) {
+    return "\n\nShare of the counts' saving that is saved in time: " + of_sah.share() + " against sah, " +
+           of_balanced.share() + " against balanced.\n";
+  }
+
+  // What it finds goes to all_of_sah and all_of_balanced too.
+  [[nodiscard]] std::string savings(const std::string& query, const std::string& size, Ratios& all_of_sah,
+                                    Ratios& all_of_balanced) const {
     std::string out = "\n## " + std::string(query == "any" ? "Any hit" : "Closest hit") + ", " + size +
                       " triangles\n\n| scene, rays | kept | counts of sah | time of sah | counts of balanced "
                       "| time of balanced "
@@ -210,9 +228,9 @@ class Page {
              " | " + spread(own, "time_of_sah") + " | " + number(of_balanced.counts.back(), "%.3f") + " | " +
              spread(own, "time_of_balanced") + " |\n";
     }
-    return out + "| geometric mean | |" + of_sah.means() + of_balanced.means() +
-           "\n\nShare of the counts' saving that is saved in time: " + of_sah.share() + " against sah, " +
-           of_balanced.share() + " against balanced.\n";
+    all_of_sah.add(of_sah);
+    all_of_balanced.add(of_balanced);
+    return out + "| geometric mean | |" + of_sah.means() + of_balanced.means() + shares(of_sah, of_balanced);
   }
 
   // Of one size: what lies in no near cache takes longer.

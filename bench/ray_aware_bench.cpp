@@ -55,7 +55,7 @@ class Builder {
       return at->second;
     };
     out.optimise = [this](const Bvh& bvh, const OptimiseOptions& options) {
-      if (!options.areas.empty()) return optimise_reference(bvh, options);
+      if (!options.areas.empty() || !options.segments.empty()) return optimise_reference(bvh, options);
       const auto [at, fresh] = moved_.try_emplace({tree_hash(bvh), options.face_weights});
       if (fresh) at->second = optimise_reference(bvh, options);
       return at->second;

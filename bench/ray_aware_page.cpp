@@ -109,8 +109,8 @@ class Page {
         (any ? std::string(
                    " near child first | of the baseline in its own learnt order |\n|---|---|---|---|\n")
              : std::string("\n|---|---|\n"));
-    for (const char* const tree : {"sah-order", "sah-mix", "sah-rays", "sah-seen", "seen-rays", "mix",
-                                   "mix-rays", "light-mix", "light-rays", "auto"}) {
+    for (const char* const tree : {"sah-order", "sah-mix", "sah-rays", "sah-segments", "sah-seen",
+                                   "seen-rays", "mix", "mix-rays", "light-mix", "light-rays", "auto"}) {
       const std::vector<double> own = ratios(cases, tree, "sah");
       if (own.empty()) continue;
       out += std::string("| ") + tree + " |" + cell(own);

@@ -3,22 +3,26 @@
 // Every kernel's result depends on the tree alone: moves are settled by integer maxima, sums are of integers.
 #include "shared/reinsert_math.h"
 
-// What boxes cost, as a kernel's last arguments say: face weights, and areas where there are any.
-#if GN_AREA_COSTS
+// What boxes cost, as a kernel's last arguments say: face weights, and areas and segments where there are any.
+#if GN_RAY_COSTS
 #define GN_COST_PARAMETERS \
-  float wx, float wy, float wz, __global const GnAreaCost *areas, uint area_count, __global const gn_u16 *maps
-#define GN_COSTS wx, wy, wz, areas, area_count, maps
+  float wx, float wy, float wz, __global const GnAreaCost *areas, uint area_count, __global const gn_u16 *maps, \
+      __global const float *segments, uint segment_count, float per_segment
+#define GN_COSTS wx, wy, wz, areas, area_count, maps, segments, segment_count, per_segment
 #else
 #define GN_COST_PARAMETERS float wx, float wy, float wz
 #define GN_COSTS wx, wy, wz
 #endif
 
 static inline void set_costs(GnBoxCosts* costs, GN_COST_PARAMETERS) {
-#if GN_AREA_COSTS
+#if GN_RAY_COSTS
   uint i;
   for (i = 0u; i < area_count; ++i) costs->areas[i] = areas[i];
   costs->count = area_count;
   costs->maps = maps;
+  costs->segments = segments;
+  costs->segment_count = segment_count;
+  costs->per_segment = per_segment;
 #endif
   costs->w[0] = wx;
   costs->w[1] = wy;

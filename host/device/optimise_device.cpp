@@ -55,7 +55,7 @@ class Optimiser {
     join_cut();
     require_depth(whole().height);
     const Node root = context_.download_values<Node>(slots_, 1, GN_ROOT_SLOT).front();
-    if (!options_.areas.empty()) send_areas(root);
+    if (looks_at_rays()) send_ray_costs(root);
     units_ = units_of(box_costs({{root}, {}}, options_).front());
     if (units_ > 0.0F) run_passes(*this, options_);
     return renumber();
@@ -115,22 +115,31 @@ class Optimiser {
         arguments...);
   }
 
-  // The same for kernels that ask what boxes cost, which are compiled without areas where there are none.
+  // The same for kernels that ask what boxes cost, which are compiled without rays' where there are none.
   template <typename... Arguments>
   void launch_costs(const char* stage, const char* name, std::uint32_t items, const Arguments&... arguments) {
-    if (options_.areas.empty()) {
+    if (!looks_at_rays()) {
       launch(stage, name, items, arguments..., w(0), w(1), w(2));
     } else {
-      run("reinsert.cl", "-DGN_AREA_COSTS=1", stage, name, items, context_.device().is_cpu ? 1 : widest(),
-          arguments..., w(0), w(1), w(2), areas_, area_count_, maps_);
+      run("reinsert.cl", "-DGN_RAY_COSTS=1", stage, name, items, context_.device().is_cpu ? 1 : widest(),
+          arguments..., w(0), w(1), w(2), areas_, area_count_, maps_, segments_,
+          static_cast<std::uint32_t>(options_.segments.size()), per_segment_);
     }
   }
 
-  void send_areas(const Node& root) {
+  [[nodiscard]] bool looks_at_rays() const { return !options_.areas.empty() || !options_.segments.empty(); }
+
+  void send_ray_costs(const Node& root) {
     const float faces = gn_linear_measure(options_.face_weights.data(), root.lo, root.hi);
     AreaCosts all = area_costs(options_.areas, faces, root.lo, root.hi);
-    if (all.maps.empty()) all.maps.push_back(0);  // no buffer is empty
+    std::vector<float> planes = segment_planes(options_.segments);
     area_count_ = static_cast<std::uint32_t>(all.areas.size());
+    per_segment_ = cost_per_segment(options_, faces);
+    if (all.areas.empty()) all.areas.push_back({});  // no buffer is empty
+    if (all.maps.empty()) all.maps.push_back(0);
+    if (planes.empty()) planes.push_back(0.0F);
+    segments_ = context_.create_buffer("optimise_segments", planes.size() * sizeof(float));
+    context_.upload_values<float>(segments_, planes);
     areas_ = context_.create_buffer("optimise_areas", all.areas.size() * sizeof(GnAreaCost));
     maps_ = context_.create_buffer("optimise_maps", all.maps.size() * sizeof(std::uint16_t));
     context_.upload_values<GnAreaCost>(areas_, all.areas);
@@ -220,12 +229,24 @@ class Optimiser {
   std::uint32_t top_count_ = 0;
   std::uint32_t count_ = 0;  // candidates of the last pass
   std::uint32_t area_count_ = 0;
+  float per_segment_ = 0.0F;
   float units_ = 0.0F;
   bool joined_ = false;  // boxes and sizes are those of the links
   cl::StageTimes times_;
   cl::Buffer slots_, above_, below_, tasks_, top_, numbers_, bins_, sums_, candidates_, length_, gains_,
-      owners_, moving_, cost_bins_, moves_, areas_, maps_;
+      owners_, moving_, cost_bins_, moves_, areas_, maps_, segments_;
 };
+
+// A search looks at two boxes for each pair below and two for each node above, and at each segment for each.
+void heed_segment_limit(const cl::DeviceInfo& device, std::size_t segments) {
+  constexpr std::uint64_t kBoxes = 2 * (GN_SEARCH_PAIRS + GN_MOST_DEPTH);
+  if (device.loop_limit == 0 || segments * kBoxes <= device.loop_limit) return;
+  throw Error(ErrorCode::kInvalidArgument,
+              device.name + " ends loops after " + std::to_string(device.loop_limit) +
+                  " turns, too few to weigh boxes by " + std::to_string(segments) +
+                  " segments; give at most " + std::to_string(device.loop_limit / kBoxes) +
+                  " or use another device");
+}
 
 }  // namespace
 
@@ -263,6 +284,7 @@ DeviceBvh optimise_device(const cl::Context& context, const DeviceBvh& tree, con
   const auto start = std::chrono::steady_clock::now();
   options.check();
   heed_optimise_limit(context.device(), tree.node_count);
+  heed_segment_limit(context.device(), options.segments.size());
   if (tree.triangle_count == 0) return upload_bvh(context, {}, {});
   Optimiser optimiser(context, tree, options);
   DeviceBvh better = optimiser.run();

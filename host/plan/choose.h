@@ -38,10 +38,11 @@ struct PlanPrices {
   double move_start = 120'000.0;  // of reinsertion by areas, until passes end
   double move = 40.0;
   double move_seen = 3'000.0;  // of reinsertion by what areas see, a triangle: measures of points are long
-  double finish = 5.0;         // of joining leaves, a triangle
-  double divide = 10.0;        // of triangles into parts, a part
-  double turn = 9.0;           // of putting triangles in a frame, three of which are looked at, a triangle
-  double learn = 9.0;          // of learning an order of children, a triangle, beside its rays
+  double move_segments = 3'000.0;  // of reinsertion by all sampled segments, a triangle
+  double finish = 5.0;             // of joining leaves, a triangle
+  double divide = 10.0;            // of triangles into parts, a part
+  double turn = 9.0;   // of putting triangles in a frame, three of which are looked at, a triangle
+  double learn = 9.0;  // of learning an order of children, a triangle, beside its rays
   double trace = 3.0;  // of a box test of a plan's own: probes and samples are traced by the reference
   double byte = 0.05;  // of a tree that is held beside the baseline
   // What a unit less is worth where rays to come are traced: a device takes 2 to 3 ns for one by now, and
@@ -98,6 +99,7 @@ struct PlanOptions {
 // baseline of "auto" there. "best-order", "best-rays": of that, as follows.
 // "sah-order": the same tree, any-hit children in the order learnt from the rays.
 // "sah-rays": reinsertion goes on by sampled rays.
+// "sah-segments": the same, many moves at once, where trees are built: by a device, if that is one.
 // "sah-mix": reinsertion goes on by the mixture of surface area and the rays' own measure.
 // "sah-seen": reinsertion goes on by what the bundles and pencils that detect finds in the rays see of boxes,
 // less what stands behind the first thing they meet (a depth map of each); surface area for all other rays.

@@ -18,9 +18,9 @@ void require(bool ok, const std::string& option, const std::string& value, const
 }  // namespace
 
 const std::vector<std::string>& candidate_names() {
-  static const std::vector<std::string> names{"sah",       "sah-order", "sah-mix",    "sah-rays",  "sah-seen",
-                                              "seen-rays", "best",      "best-order", "best-rays", "mix",
-                                              "mix-rays",  "light-mix", "light-rays"};
+  static const std::vector<std::string> names{
+      "sah",  "sah-order",  "sah-mix",   "sah-rays", "sah-segments", "sah-seen",  "seen-rays",
+      "best", "best-order", "best-rays", "mix",      "mix-rays",     "light-mix", "light-rays"};
   return names;
 }
 
@@ -57,9 +57,9 @@ void PlanOptions::check() const {
     require(work >= 1.0 && std::isfinite(work), "framed_work or packet_work", std::to_string(work),
             "of finite numbers >= 1");
   race.check();
-  for (const double price :
-       {prices.build_start, prices.build, prices.move_start, prices.move, prices.move_seen, prices.finish,
-        prices.divide, prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})
+  for (const double price : {prices.build_start, prices.build, prices.move_start, prices.move,
+                             prices.move_seen, prices.move_segments, prices.finish, prices.divide,
+                             prices.turn, prices.learn, prices.trace, prices.byte, prices.saved})
     require(price >= 0.0 && std::isfinite(price), "prices", std::to_string(price), "of finite numbers >= 0");
 }
 

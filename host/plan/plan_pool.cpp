@@ -89,6 +89,20 @@ void PlanPool::move_by_areas(const Space& space, bool sampled, Entry& entry) {
   out.build_units += for_all(options_.prices.finish);
 }
 
+// What fit does one move after the other, a pass of many at a time, by whoever builds trees.
+void PlanPool::move_by_segments(const Space& space, Entry& entry) {
+  PlanTree& out = entry.tree;
+  double traced = 0.0;
+  OptimiseOptions optimise = options_.optimise;
+  optimise.face_weights = space.weights;
+  optimise.segments = segments_of(baseline_.tree.bvh, triangles_, fit_, query_, &traced);
+  optimise.segments_share = 1.0F / options_.prior_share;
+  const Bvh loose = builder_.optimise(loose_baseline_, optimise);
+  out.tree.bvh = merge_leaves(loose, box_costs(loose, optimise), {}, &out.tree.weights);
+  out.build_units =
+      options_.prices.trace * traced + for_all(options_.prices.move_segments + options_.prices.finish);
+}
+
 void PlanPool::aim_at(const PlanRays& rays) {
   query_ = rays.query;
   fit_.clear();
@@ -155,6 +169,7 @@ double PlanPool::likely_price(const std::string& name) {
   if (light && !frame_) price += for_all(options_.prices.turn);
   if (light || name.starts_with("mix")) price += build_price();
   if (name.find("seen") != std::string::npos) price += for_all(options_.prices.move_seen);
+  if (name == "sah-segments") price += rays + for_all(options_.prices.move_segments);
   if (light || name.find("mix") != std::string::npos) price += move_price();
   if (name.ends_with("-rays")) price += rays + options_.sample_share * baseline_units_;
   return price;
@@ -193,6 +208,8 @@ PlanPool::Entry PlanPool::make(const std::string& name) {
     bvh = baseline_.tree.bvh;
   } else if (name == "sah-seen" || name == "seen-rays") {
     move_by_areas(space, name == "seen-rays", entry);
+  } else if (name == "sah-segments") {
+    move_by_segments(space, entry);
   } else if (name == baseline_.name + "-rays") {
     fit(loose_baseline_, space, entry);
   } else {

@@ -51,6 +51,7 @@ class PlanPool {
                           bool parts = false) const;
   [[nodiscard]] Bvh moved(const Bvh& bvh, const std::array<float, 3>& weights) const;
   void move_by_areas(const Space& space, bool sampled, Entry& entry);
+  void move_by_segments(const Space& space, Entry& entry);
   void fit(const Bvh& from, const Space& space, Entry& entry);
   void learn(PlanTree& tree, const Space& space);
   [[nodiscard]] float own_share() const;  // of the rays' own measure in weights

@@ -24,8 +24,12 @@ class BoxCosts {
   // The options must outlive it.
   BoxCosts(const OptimiseOptions& options, const Node& root) {
     std::copy(options.face_weights.begin(), options.face_weights.end(), costs_.w);
-    if (options.areas.empty()) return;
-    areas_ = area_costs(options.areas, gn_linear_measure(costs_.w, root.lo, root.hi), root.lo, root.hi);
+    const float faces = gn_linear_measure(costs_.w, root.lo, root.hi);
+    segments_ = segment_planes(options.segments);
+    costs_.segments = segments_.data();
+    costs_.segment_count = static_cast<std::uint32_t>(options.segments.size());
+    costs_.per_segment = cost_per_segment(options, faces);
+    areas_ = area_costs(options.areas, faces, root.lo, root.hi);
     costs_.count = static_cast<std::uint32_t>(areas_.areas.size());
     costs_.maps = areas_.maps.data();
     std::copy(areas_.areas.begin(), areas_.areas.end(), costs_.areas);
@@ -41,6 +45,7 @@ class BoxCosts {
 
  private:
   AreaCosts areas_;
+  std::vector<float> segments_;
   GnBoxCosts costs_{};
 };
 
@@ -57,10 +62,34 @@ void OptimiseOptions::check() const {
     require(area.map.sums.empty() || area.map.sums.size() == GN_MAP_SUMS, "areas: sums of a map",
             std::to_string(area.map.sums.size()), "0 or " + std::to_string(GN_MAP_SUMS));
   }
+  for (const GnRay& segment : segments)
+    require(gn_ray_is_valid(&segment) != 0, "segments", "one that cannot be traced", "of traceable rays");
+  require(segments_share >= 0.0F && std::isfinite(segments_share), "segments_share",
+          std::to_string(segments_share), "of finite numbers >= 0");
   require(max_passes <= 64, "max_passes", std::to_string(max_passes), "0..64");
   require(share > 0.0F && share <= 1.0F, "share", std::to_string(share), "(0, 1]");
   require(least_gain >= 0.0F && least_gain < 1.0F, "least_gain", std::to_string(least_gain), "[0, 1)");
   require(max_depth >= 1 && max_depth <= GN_MOST_DEPTH, "max_depth", std::to_string(max_depth), "1..128");
+}
+
+std::vector<float> segment_planes(std::span<const GnRay> segments) {
+  const std::size_t count = segments.size();
+  std::vector<float> planes(GN_SEGMENT_PLANES * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const GnRayFrame frame = gn_ray_frame(&segments[i]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      planes[k * count + i] = frame.origin[k];
+      planes[(3 + k) * count + i] = frame.inverse[k];
+    }
+    planes[6 * count + i] = gn_finite_tmin(segments[i].tmin);
+    planes[7 * count + i] = segments[i].tmax;
+  }
+  return planes;
+}
+
+float cost_per_segment(const OptimiseOptions& options, float root_faces) {
+  if (options.segments.empty()) return 0.0F;
+  return options.segments_share * root_faces / static_cast<float>(options.segments.size());
 }
 
 void require_depth(std::uint32_t depth) {

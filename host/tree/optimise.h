@@ -20,6 +20,10 @@ struct OptimiseOptions {
   // Beside face weights: rays of areas, of any measure, less where a depth map says that they are stopped
   // before. At most GN_MOST_COST_AREAS.
   std::vector<AreaCost> areas{};
+  // Beside both: segments of rays that stand for what is traced, from tmin to tmax, as closest rays end at
+  // their hit. Traceable. A search tests each against every box it looks at.
+  std::vector<GnRay> segments{};
+  float segments_share = 4.0F;  // what a box that all segments meet costs, in faces of the root; >= 0, finite
   std::uint32_t max_passes = 6;  // 0..64
   float share = 0.05F;           // of the nodes, the most costly ones, that a pass tries to move; (0, 1]
   float least_gain = 0.01F;      // passes end when one saves less than this share of the cost; [0, 1)
@@ -39,9 +43,15 @@ struct OptimiseOptions {
 // deeper than 128).
 [[nodiscard]] Bvh optimise_reference(const Bvh& bvh, const OptimiseOptions& options = {});
 
-// What each node's box costs by face weights and areas, scaled as optimising a tree with this root scales
-// them. Throws Error{kInvalidArgument} (options).
+// What each node's box costs by face weights, areas and segments, scaled as optimising a tree with this root
+// scales them. Throws Error{kInvalidArgument} (options).
 [[nodiscard]] std::vector<float> box_costs(const Bvh& bvh, const OptimiseOptions& options);
+
+// Segments as box costs read them, GN_SEGMENT_PLANES planes.
+[[nodiscard]] std::vector<float> segment_planes(std::span<const GnRay> segments);
+
+// What a segment that meets a box costs, where the root's faces cost root_faces; 0 where there is none.
+[[nodiscard]] float cost_per_segment(const OptimiseOptions& options, float root_faces);
 
 // Throws Error{kInvalidArgument} for a tree deeper than the search's stacks can follow.
 void require_depth(std::uint32_t depth);

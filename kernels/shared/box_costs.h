@@ -1,18 +1,19 @@
-// What a box costs while trees are optimised: what face weights give it (measure_math.h), and for each area that is given how
-// likely that area's rays meet it, less where it stands behind what stops them.
-// Options: GN_AREA_COSTS (0: face weights alone, without the code for areas; the host has it always).
+// What a box costs while trees are optimised: what face weights give it (measure_math.h), for each area that is given how
+// likely that area's rays meet it, less where it stands behind what stops them, and how many sampled segments do.
+// Options: GN_RAY_COSTS (0: face weights alone, without the code for areas and segments; the host has it always).
 // Feeds reinsert_math.h.
 #ifndef GNOMON_SHARED_BOX_COSTS_H
 #define GNOMON_SHARED_BOX_COSTS_H
 
 #include "depth_map.h"
 #include "measure_math.h"
+#include "segment_costs.h"
 
-#ifndef GN_AREA_COSTS
+#ifndef GN_RAY_COSTS
 #ifdef __OPENCL_VERSION__
-#define GN_AREA_COSTS 0
+#define GN_RAY_COSTS 0
 #else
-#define GN_AREA_COSTS 1
+#define GN_RAY_COSTS 1
 #endif
 #endif
 
@@ -40,16 +41,23 @@ typedef struct GnBox {
 // The seam for measures.
 typedef struct GnBoxCosts {
   gn_f32 w[3];  // of the faces
-#if GN_AREA_COSTS
+#if GN_RAY_COSTS
   gn_u32 count;
   GN_GLOBAL const gn_u16* maps;
   GnAreaCost areas[GN_MOST_COST_AREAS];
+  gn_u32 segment_count;
+  GN_GLOBAL const gn_f32* segments;
+  gn_f32 per_segment;  // that meets a box
 #endif
 } GnBoxCosts;
 
-#if GN_AREA_COSTS
-GN_INLINE gn_f32 gn_area_costs(const GnBoxCosts* costs, const GnBox* box) {
-  gn_f32 sum = 0.0f;
+#if GN_RAY_COSTS
+GN_INLINE int gn_has_ray_costs(const GnBoxCosts* costs) { return costs->count > 0u || costs->segment_count > 0u; }
+
+// Beside faces'.
+GN_INLINE gn_f32 gn_ray_costs(const GnBoxCosts* costs, const GnBox* box) {
+  gn_f32 sum =
+      costs->per_segment * (gn_f32)gn_segments_met(costs->segments, costs->segment_count, box->lo, box->hi);
   gn_u32 i;
   for (i = 0u; i < costs->count; ++i) {
     const GnAreaCost* area = costs->areas + i;
@@ -66,8 +74,8 @@ GN_INLINE gn_f32 gn_area_costs(const GnBoxCosts* costs, const GnBox* box) {
 
 GN_INLINE gn_f32 gn_box_cost(const GnBoxCosts* costs, const GnBox* box) {
   const gn_f32 faces = gn_linear_measure(costs->w, box->lo, box->hi);
-#if GN_AREA_COSTS
-  if (costs->count > 0u) return faces + gn_area_costs(costs, box);
+#if GN_RAY_COSTS
+  if (gn_has_ray_costs(costs)) return faces + gn_ray_costs(costs, box);
 #endif
   return faces;
 }

@@ -39,11 +39,11 @@ GN_INLINE int gn_is_box_of(const GnBox* box, GN_GLOBAL const GnNode* node) {
 GN_INLINE gn_f32 gn_slot_cost(const GnBoxCosts* costs, GN_GLOBAL const GnNode* node) {
   const gn_f32 faces =
       gn_linear_extents(costs->w, node->hi[0] - node->lo[0], node->hi[1] - node->lo[1], node->hi[2] - node->lo[2]);
-#if GN_AREA_COSTS
-  if (costs->count > 0u) {
+#if GN_RAY_COSTS
+  if (gn_has_ray_costs(costs)) {
     GnBox box;
     gn_load_box(node, &box);
-    return faces + gn_area_costs(costs, &box);
+    return faces + gn_ray_costs(costs, &box);
   }
 #endif
   return faces;
@@ -51,8 +51,8 @@ GN_INLINE gn_f32 gn_slot_cost(const GnBoxCosts* costs, GN_GLOBAL const GnNode* n
 
 // The cost of the box around a node and another box.
 GN_INLINE gn_f32 gn_joint_cost(const GnBoxCosts* costs, const GnBox* box, GN_GLOBAL const GnNode* node) {
-#if GN_AREA_COSTS
-  if (costs->count > 0u) {
+#if GN_RAY_COSTS
+  if (gn_has_ray_costs(costs)) {
     GnBox joint = *box;
     gn_grow_box(&joint, node);
     return gn_box_cost(costs, &joint);

@@ -107,6 +107,41 @@ TEST_CASE("what areas see of boxes moves nodes as in the reference, with depth m
   }
 }
 
+TEST_CASE("sampled segments move nodes as in the reference, by themselves and beside areas",
+          "[unlimited][optimise]") {
+  const Triangles triangles = gnomon::test::soup(600, 226, 0.4F);
+  OptimiseOptions options = every_node(3);
+  for (const std::uint32_t count : {1U, 7U, 300U}) {
+    CAPTURE(count);
+    options.segments = gnomon::test::random_rays(count, 227, 0.0F, 10.0F);
+    REQUIRE(require_same(triangles, poor(), options));
+  }
+  for (const auto& [name, some] : gnomon::test::awkward_inputs()) {
+    CAPTURE(name);
+    static_cast<void>(require_same(some, {}, options));
+  }
+  options.areas = gnomon::test::areas_around(triangles);
+  REQUIRE(require_same(triangles, poor(), options));
+}
+
+TEST_CASE("a device that ends loops is not asked to weigh boxes by many segments", "[portable]") {
+  const Triangles triangles = gnomon::test::soup(20, 228);
+  OptimiseOptions options;
+  options.segments = gnomon::test::random_rays(512, 229);
+  const auto tree = gnomon::upload_bvh(context(), gnomon::build_reference(triangles), triangles);
+  if (context().device().loop_limit != 0) {
+    REQUIRE_THROWS_WITH(gnomon::optimise_device(context(), tree, options), Catch::Contains("512 segments"));
+  } else {
+    REQUIRE(gnomon::optimise_device(context(), tree, options).triangle_count == 20);
+  }
+}
+
+TEST_CASE("a few nodes are moved by what segments meet within their buffers", "[memcheck][optimise]") {
+  OptimiseOptions options = every_node(1);
+  options.segments = gnomon::test::random_rays(9, 230);
+  static_cast<void>(require_same(gnomon::test::soup(30, 231), poor(), options));
+}
+
 TEST_CASE("a few nodes are moved by what areas see within their buffers", "[memcheck][optimise]") {
   const Triangles triangles = gnomon::test::soup(30, 225);
   OptimiseOptions options = every_node(1);

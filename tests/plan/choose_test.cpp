@@ -239,6 +239,18 @@ TEST_CASE("boxes that areas see make camera rays cheaper, and diffuse rays have 
   REQUIRE(tree_hash(none.trees[none.decisions[0].tree].tree.bvh) == tree_hash(none.trees[0].tree.bvh));
 }
 
+TEST_CASE("many moves at once by sampled segments make fresh rays of the same kind cheaper") {
+  PlanOptions options;
+  options.choice = "sah-segments";
+  const Plan plan = gnomon::make_plan(cottage().triangles, both_kinds(1.0), options);
+  const auto fresh = gnomon::primary_rays(cottage(), 2000, 3);
+  const gnomon::PlanTree& moved = plan.trees[plan.decisions[0].tree];
+  REQUIRE(mean_cost(moved.tree, fresh, Query::kClosest) <
+          0.95 * mean_cost(plan.trees[0].tree, fresh, Query::kClosest));
+  REQUIRE(moved.build_units > 0.0);
+  REQUIRE(moved.tree.weights.size() == moved.tree.bvh.nodes.size());
+}
+
 TEST_CASE("plans are the same again, and JSON tells all of them") {
   const auto rays = both_kinds(kMany);
   PlanOptions options;

@@ -138,6 +138,20 @@ table speed.md "all threads" speed.jsonl "false as \$one | $speed"'
   entry("fast, LOW"; "build"; null; "fast"; "LOW"; null),
   entry("best, HIGH"; "build"; null; "best"; "HIGH"; null)'
 
+# The compact layout: bytes of trees, and rays beside those of other flavours.
+table compact-layout.md "compact bytes" compact.jsonl '
+  last.commit as $new | map(select(.commit == $new)) | . as $rows | "Commit \($new), \($rows[0].device).", "",
+  (["scene", "compact", "wide", "making it of the wide tree, ms"] | line), "|---|---|---|---|",
+  ("terrain", "atrium", "city", "random" | . as $scene | $rows | map(select(.task == "build" and .scene == $scene))[-1] |
+   [$scene, (.compact_bytes_per_triangle | fixed(1)), (.bytes_per_triangle | fixed(1)), (.compact_ms | fixed(0))] | line)'
+table compact-layout.md "compact rays" compact.jsonl '
+  last.commit as $new | map(select(.commit == $new and .task == "closest hit" and .peer == "MEDIUM 1")) as $rows |
+  def cell($scene; $rays; $ours): $rows | map(select(.scene == $scene and .rays == $rays and .ours == $ours))[-1] |
+    "\(1000 / .cpu_time | fixed(2)) (\(.boxes_per_ray | fixed(0)) + \(.triangles_per_ray | fixed(0)))";
+  (["scene, rays", "thread", "wide", "compact"] | line), "|---|---|---|---|",
+  ("atrium", "terrain", "city", "random" | . as $scene | ("primary", "bounce") | . as $rays |
+   ["\($scene), \($rays)", cell($scene; $rays; "thread"), cell($scene; $rays; "wide"), cell($scene; $rays; "compact")] | line)'
+
 # The newest rows of whole pictures.
 table ray-aware.md "whole pictures" render.jsonl '
   last.commit as $new | map(select(.commit == $new)) | . as $rows |

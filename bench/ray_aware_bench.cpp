@@ -124,6 +124,8 @@ class Bench {
       if (rays.query == Query::kAny && name != "best" && !name.ends_with("-order"))
         row(start, name + " near", {tree.tree.bvh, {}}, rays, expected, json::object());
     }
+    if (!rays.members.empty() && rays.members.size() < set_up_.triangles.size())
+      local_rows(start, rays, asked, expected);
     row(start, "auto", plan.trees[decision.tree].tree, rays, expected,
         {{"baseline", own},
          {"kept", decision.kept},
@@ -134,6 +136,22 @@ class Bench {
          {"kept_units", plan.kept_units},
          {"probe_units", decision.probe_units}});
     std::fflush(stdout);
+  }
+
+  // Trees over the triangles that touch the rays' region alone, made as sah and sah-rays are: what a local
+  // tree brings its own rays, nothing being counted for others that go on to a tree of all.
+  void local_rows(const json& start, const RayCase& rays, const std::vector<PlanRays>& asked,
+                  const std::vector<Hit>& expected) {
+    std::vector<Triangle> own;
+    for (const std::uint32_t i : rays.members) own.push_back(set_up_.triangles[i]);
+    for (const char* const name : {"sah", "sah-rays"}) {
+      PlanOptions options = settings_.plan;
+      options.choice = name;
+      Plan plan = make_plan(own, asked, options, builder_.get());
+      OrderedTree& tree = plan.trees[plan.decisions.front().tree].tree;
+      for (std::uint32_t& primitive : tree.bvh.primitives) primitive = rays.members[primitive];
+      row(start, std::string("local ") + name, tree, rays, expected, {{"local_triangles", own.size()}});
+    }
   }
 
   // Of a candidate that was tried.

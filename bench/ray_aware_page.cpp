@@ -27,6 +27,7 @@ struct Case {
   std::string set_up;
   std::string rays;
   std::map<std::string, json> trees;
+  std::map<std::string, json> local;  // trees over a part of the triangles
   [[nodiscard]] bool has(const std::string& tree) const { return trees.count(tree) > 0; }
   [[nodiscard]] double cost(const std::string& tree) const { return trees.at(tree).at("cost").get<double>(); }
   // "sah", or "best" where spatial splits pay.
@@ -63,7 +64,8 @@ class Page {
       Case& found = groups_[row.at("family").get<std::string>() + ": " + kind][key];
       found.set_up = row.at("set_up");
       found.rays = rays;
-      found.trees[row.at("tree").get<std::string>()] = row;
+      const std::string tree = row.at("tree");
+      (tree.starts_with("local ") ? found.local : found.trees)[tree] = row;
       different_ += row.at("different_hits").get<std::uint64_t>();
       commit_ = row.at("commit");
       rows_ += 1;
@@ -84,7 +86,7 @@ class Page {
                       "baseline's, all rows together: " +
                       std::to_string(different_) + ".\n";
     for (const auto& [name, cases] : groups_) out += table(name, cases);
-    return out + spatial_splits() + nothing_helps();
+    return out + spatial_splits() + local_trees() + nothing_helps();
   }
 
  private:
@@ -178,6 +180,30 @@ class Page {
         out += "| " + name + " | " + c.set_up + ", " + c.rays + " | " + number(c.cost("sah"), "%.1f") + " |" +
                ratio("best", "sah") + ratio("sah-rays", "sah") + ratio("best-order", "best") +
                ratio("best-rays", "best") + " " + c.trees.at("auto").at("kept").get<std::string>() + " |\n";
+      }
+    }
+    return out;
+  }
+
+  // What trees over a region's own triangles would bring, were all rays in it.
+  [[nodiscard]] std::string local_trees() const {
+    std::string out =
+        "\n## Local trees\n\nOver the triangles alone that touch the region which all these rays are in, "
+        "where "
+        "that leaves any out. No plan makes them: other rays would have to go on to a tree of all "
+        "triangles.\n\n| rays | set-up | triangles | sah-rays | local sah | local sah-rays "
+        "|\n|---|---|---|---|---|---|\n";
+    for (const auto& [name, cases] : groups_) {
+      for (const auto& [key, c] : cases) {
+        if (c.local.empty()) continue;
+        const json& row = c.local.at("local sah");
+        const auto ratio = [&c](const json& tree) {
+          return number(tree.at("cost").get<double>() / c.cost("sah"), " %.3f |");
+        };
+        out += "| " + name + " | " + c.set_up + ", " + c.rays + " | " +
+               std::to_string(row.at("local_triangles").get<std::uint64_t>()) + " of " +
+               std::to_string(row.at("triangles").get<std::uint64_t>()) + " |" +
+               ratio(c.trees.at("sah-rays")) + ratio(row) + ratio(c.local.at("local sah-rays")) + "\n";
       }
     }
     return out;

@@ -25,9 +25,13 @@ constexpr std::size_t kFewest = 256;  // fewer rays make no case
 
 using Draw = std::function<std::vector<Ray>(std::uint64_t count, std::uint64_t seed)>;
 
-void add_case(AwareSetUp& out, const std::string& rays, Query query, std::uint64_t count, const Draw& draw) {
-  RayCase made{
-      rays, query, {draw(kFitRays, kFitSeed), draw(kProbeRays, kProbeSeed), draw(count, kMeasureSeed)}};
+void add_case(AwareSetUp& out, const std::string& rays, Query query, std::uint64_t count, const Draw& draw,
+              const std::vector<std::uint32_t>& members = {}) {
+  RayCase made{rays,
+               query,
+               {draw(kFitRays, kFitSeed), draw(kProbeRays, kProbeSeed), draw(count, kMeasureSeed)},
+               false,
+               members};
   if (std::min({made.draws.fit.size(), made.draws.probe.size(), made.draws.measure.size()}) < kFewest) return;
   out.cases.push_back(std::move(made));
 }
@@ -142,8 +146,9 @@ AwareSetUp generated_set_up(const std::string& name, const Scene& scene, std::ui
     const Draw of_light = [&](std::uint64_t count, std::uint64_t seed) {
       return area_rays(light.area, measure, count, seed);
     };
-    add_case(out, "light " + std::to_string(light.light), Query::kClosest, rays, of_light);
-    add_case(out, "light " + std::to_string(light.light), Query::kEvery, rays, of_light);
+    const std::vector<std::uint32_t> own = members(light.area, scene.triangles);
+    for (const Query query : {Query::kClosest, Query::kEvery})
+      add_case(out, "light " + std::to_string(light.light), query, rays, of_light, own);
   }
   return out;
 }

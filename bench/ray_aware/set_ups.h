@@ -25,6 +25,8 @@ struct RayCase {
   Query query = Query::kClosest;
   Draws draws;
   bool together = false;  // PlanRays'
+  // The triangles that touch the region all rays are in; none where there is no such region.
+  std::vector<std::uint32_t> members{};
 };
 
 // Triangles and what is asked of them.

@@ -25,11 +25,12 @@ double shown_below(const WideBvh& wide, std::uint32_t link) {
   const GnLeaf leaf = gn_leaf_at(wide.leaves.data(), link);
   for (std::uint32_t i = 0; i < leaf.count; ++i) {
     const GnTriangle triangle = gnomon::triangle_in(wide, gn_seat_in(leaf, i));
-    const auto edge = [&](std::uint32_t corner, std::uint32_t k) {
-      return double{(corner == 1 ? triangle.v1 : triangle.v2)[k % 3]} - triangle.v0[k % 3];
+    const auto edge = [&triangle](const float* to, std::size_t k) {
+      return double{to[k % 3]} - double{triangle.v0[k % 3]};
     };
-    for (std::uint32_t k = 0; k < 3; ++k)
-      shown += 0.5 * std::fabs(edge(1, k) * edge(2, k + 1) - edge(1, k + 1) * edge(2, k));
+    for (std::size_t k = 0; k < 3; ++k)
+      shown += 0.5 * std::fabs(edge(triangle.v1, k) * edge(triangle.v2, k + 1) -
+                               edge(triangle.v1, k + 1) * edge(triangle.v2, k));
   }
   return shown;
 }

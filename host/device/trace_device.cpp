@@ -53,12 +53,12 @@ GnBounds box_of(const CompactNode& root) {
   return box;
 }
 
-// For rays to be sorted in; none when they are not.
+// For rays to be sorted in; none when they are not. frame: that boxes stand in, or null.
 template <typename Node>
 std::unique_ptr<RaySort> sort_in(const cl::Context& context, const cl::Buffer& nodes,
-                                 const TraceOptions& options, const std::optional<BoxFrame>& frame = {}) {
+                                 const TraceOptions& options, const BoxFrame* frame = nullptr) {
   if (!options.sort_rays && options.lights.empty()) return nullptr;
-  if (frame) {  // rays begin where triangles are, not where boxes stand
+  if (frame != nullptr) {  // rays begin where triangles are, not where boxes stand
     const float size = frame->size;
     return std::make_unique<RaySort>(context, GnBounds{{-size, -size, -size}, 0.0F, {size, size, size}, 0.0F},
                                      options.lights);
@@ -161,7 +161,7 @@ void Tracer::trace_wide(const DeviceWideBvh& tree, const TraceOptions& options) 
     frame_ = context_.create_buffer("box_frame", sizeof(BoxFrame));
     context_.upload_values<BoxFrame>(frame_, std::span(&*tree.frame, 1));
   }
-  sort_ = sort_in<GnWideNode>(context_, tree.nodes, options, tree.frame);
+  sort_ = sort_in<GnWideNode>(context_, tree.nodes, options, tree.frame ? &*tree.frame : nullptr);
   nodes_ = tree.nodes.mem.get();
   triangles_ = tree.leaves.mem.get();
   set_up(flavour_ == TraceFlavour::kPacket ? "trace_packet.cl" : "trace_wide.cl");

@@ -1,6 +1,7 @@
 // The compact tree, for devices where memory traffic decides: nodes of 80 bytes whose eight boxes are quantised, and the
-// triangles of each node's leaves packed (packed_leaves.h). Made by quantise.cl from the wide tree, read by trace_compact.cl and by their
-// references. Same rules as layout.h. Source: Ylitie, Karras, Laine 2017 (the node; ours counts triangles by bytes).
+// triangles of each node's leaves packed (packed_leaves.h). Made by quantise.cl from the wide tree, read by
+// trace_compact.cl and by their references. Same rules as layout.h.
+// Source: Ylitie, Karras, Laine 2017 (the node; ours counts triangles by bytes).
 #ifndef GNOMON_SHARED_COMPACT_LAYOUT_H
 #define GNOMON_SHARED_COMPACT_LAYOUT_H
 
@@ -10,8 +11,8 @@
 // One node of eight slots. Step q of axis k lies at origin[k] + q * 2^(scale - 127), added in float. scales: byte k is
 // the scale of axis k; byte 3 has a bit for each slot that holds a node. Those nodes lie side by side from first_node
 // on, in order of slots. counts: a byte for each slot, the triangles of one that holds a leaf, else 0. leaves: the word
-// where all of them are packed, in order of slots; 0 where there are none. planes: a byte for each slot, lower x, upper x, lower y, upper y,
-// lower z, upper z; bytes of empty slots are 0.
+// where all of them are packed, in order of slots; 0 where there are none. planes: a byte for each slot, lower x, upper
+// x, lower y, upper y, lower z, upper z; bytes of empty slots are 0.
 typedef struct GnCompactNode {
   gn_f32 origin[3];
   gn_u32 scales;

@@ -17,6 +17,13 @@ static GN_OUT_OF_LINE void decide(GnPacket* p, __global const float8* rays, __gl
   }
   const GnRay ray = load_ray(rays, p->first + index);
   const GnRayFrame frame = gn_ray_frame(&ray);
+  if (verdict > 0 && (p->pending[g] & bit)) {
+    uint* pending = (uint*)p->seat + index;
+    if (meet_at_once(&frame, leaves, *pending, seat)) {
+      if (gn_number_at(leaves, seat) < gn_number_at(leaves, *pending)) *pending = seat;
+      return;
+    }
+  }
   float* nearest = (float*)p->nearest + index;
   float* farthest = (float*)p->farthest + index;
   GnHit hit;

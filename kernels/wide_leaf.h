@@ -132,11 +132,35 @@ static inline int is_nearest(const GnWideWalk* walk, __global const uint* leaves
   return walk->found && primitive == gn_number_at(leaves, seat);
 }
 
+// Whether two triangles that the ray meets for certain have the same t, without working them out: both lie in one plane
+// across an axis, as a floor and what stands on it do.
+static inline int meet_at_once(const GnRayFrame* frame, __global const uint* leaves, uint seat, uint other) {
+#if !GN_FAST
+  __global const float* a = (__global const float*)leaves + gn_seat_word(seat);
+  __global const float* b = (__global const float*)leaves + gn_seat_word(other);
+  const uint step_a = gn_seat_stride(seat), step_b = gn_seat_stride(other);
+  uint k;
+  for (k = 0u; k < 3u; ++k) {
+    const float plane = a[k * step_a];
+    if (a[(3u + k) * step_a] != plane || a[(6u + k) * step_a] != plane || b[k * step_b] != plane ||
+        b[(3u + k) * step_b] != plane || b[(6u + k) * step_b] != plane)
+      continue;
+    return gn_plane_has_one_t(frame, k, plane);
+  }
+#endif
+  return 0;
+}
+
 // A triangle that floats cannot rank, or not even call met.
 static GN_OUT_OF_LINE void test_exactly(GnWideWalk* walk, const GnWideRay* ray, __global const uint* leaves,
                                         uint seat, int verdict) {
   GnHit hit;
   if (is_nearest(walk, leaves, seat)) return;
+  if (verdict > 0 && walk->pending && meet_at_once(&ray->frame, leaves, walk->seat, seat)) {
+    // Of equals that of the lower number is the hit (gn_hit_is_nearer).
+    if (gn_number_at(leaves, seat) < gn_number_at(leaves, walk->seat)) walk->seat = seat;
+    return;
+  }
   if (!resolve(&ray->frame, leaves, seat, verdict, &hit)) return;
   if (!(hit.t >= ray->tmin && hit.t <= ray->tmax)) return;
   settle(walk, ray, leaves);

@@ -247,6 +247,24 @@ GN_INLINE int gn_triangle_by_floats(const GnRayFrame* ray, const gn_f32* v0, con
   return 1;
 }
 
+#define GN_AT_ONCE 7.450580596923828e-09  // 2^-27
+
+// Whether all triangles in the plane across axis k which the ray meets for certain have the same t: where it meets that
+// plane is not so close to the middle between two floats that 2^-28 of it, what a t may be wrong by before it is rounded
+// (gn_mean_is_doubtful), could part them.
+GN_INLINE int gn_plane_has_one_t(const GnRayFrame* ray, gn_u32 k, gn_f32 plane) {
+#if GN_HAS_FP64
+  const double t = ((double)plane - (double)ray->origin[k]) / (double)ray->direction[k];
+  const double size = fabs(t);
+  return size > 1e-30 && size < 1e30 && (gn_f32)(t * (1.0 - GN_AT_ONCE)) == (gn_f32)(t * (1.0 + GN_AT_ONCE));
+#else
+  (void)ray;
+  (void)k;
+  (void)plane;
+  return 0;
+#endif
+}
+
 // Whether `hit` (range already checked) comes before the best so far: nearer, or as near with a lower index, so that
 // the answer does not depend on the order in which a tree offers triangles.
 GN_INLINE int gn_hit_is_nearer(const GnHit* hit, const GnHit* best) {

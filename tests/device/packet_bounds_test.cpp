@@ -28,6 +28,23 @@ TEST_CASE("packets rank sheets that nearly touch and slivers as the other flavou
   require_equal_flavours(triangles, camera_rays(4, {5, 2.01F, 30}, {0.05F, -0.001F, -1}, 0.05F));
 }
 
+TEST_CASE("packets report the first of faces in one plane", "[unlimited]") {
+  gnomon::test::Random random(109);
+  gnomon::test::Triangles triangles;
+  for (int i = 0; i < 80; ++i) {
+    const float y = static_cast<float>(random.below(3));
+    const float x = random.between(-20, 10);
+    const float end = i % 4 == 0 ? std::nextafter(y, 9.0F) : y;
+    triangles.push_back(gnomon::test::triangle({x, y, -20}, {x + 20, y, -20}, {x + 8, end, 40}));
+  }
+  for (const std::uint32_t leaf : {1U, 8U}) {
+    const auto options = gnomon::test::lazy_leaves_of(leaf);
+    require_equal_flavours(triangles, gnomon::test::camera_rays(3, {5, 9, 5}, {0.1F, -1, 0.2F}, 0.5F),
+                           options);
+    require_equal_flavours(triangles, gnomon::test::sun_rays(3, {0.3F, -0.9F, 0.1F}, 4.0F), options);
+  }
+}
+
 // Numbers so small or so large that products of them underflow or overflow.
 TEST_CASE("packets agree where products underflow and overflow", "[unlimited]") {
   Random random(208);

@@ -154,6 +154,30 @@ TEST_CASE("faces in one plane are told apart whatever is met before, between and
     require_equal_flavours(triangles, rays, gnomon::test::lazy_leaves_of(leaf));
 }
 
+// Where the nearer of two is told without working both out: but for the middle between two floats, and but
+// for faces that only begin in the plane.
+TEST_CASE("faces in one plane seen edge-on, and faces next to it, are told apart", "[unlimited]") {
+  gnomon::test::Random random(108);
+  for (const bool tilted : {false, true}) {
+    CAPTURE(tilted);
+    Triangles triangles;
+    for (int i = 0; i < 60; ++i) {
+      const float y = static_cast<float>(random.below(3)) / 3.0F;
+      const float z = random.between(-0.02F, 0.02F);
+      const float end = tilted && i % 2 == 0 ? std::nextafter(y, 9.0F) : y;
+      const float width = tilted ? 40.0F : random.between(0.01F, 0.1F);
+      triangles.push_back(gnomon::test::triangle({-400, y, z - width}, {-400, y, z + width},
+                                                 {random.between(500, 900), end, z}));
+    }
+    Rays rays;
+    for (int i = 0; i < 3000; ++i)
+      rays.push_back(ray({random.between(-3, 3), 1.5F, random.between(-0.01F, 0.01F)},
+                         {random.between(5, 90), -1.0F, random.between(-0.001F, 0.001F)}));
+    for (const std::uint32_t leaf : {1U, 8U})
+      require_equal_flavours(triangles, rays, gnomon::test::lazy_leaves_of(leaf));
+  }
+}
+
 TEST_CASE("the flavours agree on ranges that end or begin next to a hit", "[unlimited]") {
   const auto triangles = gnomon::test::soup(1000, 106, 1.0F);
   const Rays rays = gnomon::test::random_rays(300, 107);

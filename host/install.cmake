@@ -9,13 +9,13 @@ set(public_headers
   areas/vector.h areas/box.h areas/ray_tests.h areas/solids.h areas/convex_polygon.h areas/influence_area.h
   areas/ray_measure.h areas/projection.h areas/cone_weights.h areas/membership.h areas/areas_from_scene.h
   areas/area_rays.h areas/measure.h areas/shared_area.h areas/detect.h areas/detect_lights.h
-  tree/build_options.h tree/bvh.h tree/box_frame.h tree/bvh_check.h tree/wide.h tree/compact.h tree/build_reference.h tree/oracle.h tree/candidate_tree.h tree/top_level.h
+  tree/build_options.h tree/bvh.h tree/box_frame.h tree/bvh_check.h tree/wide.h tree/regions.h tree/compact.h tree/build_reference.h tree/oracle.h tree/candidate_tree.h tree/top_level.h
   tree/optimise.h tree/depth_map.h tree/tree_file.h tree/tree_export.h
   tree/merge_leaves.h tree/trace_reference.h
   plan/ray_sample.h plan/child_order.h plan/optimise_for_rays.h plan/race.h plan/choose.h plan/outlook.h
   cl/opencl.h cl/check.h cl/handle.h cl/device.h cl/context.h cl/launch.h
   device/build_device.h device/collapse_device.h device/optimise_device.h device/compact_device.h device/trace_device.h
-  device/forest.h device/find_areas.h device/trace_areas.h
+  device/forest.h device/join_wide.h device/find_areas.h device/trace_areas.h
   render/picture.h render/path_options.h render/path_tracer.h render/picture_tracing.h render/ray_recorder.h render/render.h render/heat_map.h render/png.h)
 set(header_folder ${CMAKE_INSTALL_INCLUDEDIR}/gnomon)
 install(FILES gnomon.h DESTINATION ${header_folder})

@@ -22,6 +22,9 @@ typedef struct GnPacket {
   GnBoxFrame frame;
   float margin;  // that widens boxes
 #endif
+#if GN_REGIONS
+  float16 direction[3][GN_GROUPS];
+#endif
   float16 tmin[GN_GROUPS];
   float16 tmax[GN_GROUPS];
   float16 limit[GN_GROUPS];  // of box entries still of interest
@@ -325,6 +328,11 @@ static inline int start_packet(GnPacket* p, __global const float8* rays, uint fi
 #endif
   for (g = 0u; g < groups; ++g) {
     const float16 limit = p->tmax[g] * (1.0f + GN_SLAB_SLACK);
+#if GN_REGIONS
+    p->direction[0][g] = directions[0][g];
+    p->direction[1][g] = directions[1][g];
+    p->direction[2][g] = directions[2][g];
+#endif
     p->limit[g] = GN_MIN8(limit, (float16)FLT_MAX);
     p->nearest[g] = (float16)INFINITY;
     p->farthest[g] = (float16)INFINITY;

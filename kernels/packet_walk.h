@@ -1,7 +1,7 @@
 // A packet of rays through the wide tree: a node's boxes are tested against the bounds of all rays at once; a child that
 // is left is tested against the rays themselves, sixteen at a time, when its turn comes. Closest hit visits children
 // by distance, any hit the last slot first.
-// Options: GN_WIDE_STACK, GN_COUNTERS, GN_PORTABLE. Feeds trace_packet.cl.
+// Options: GN_WIDE_STACK, GN_COUNTERS, GN_PORTABLE, GN_REGIONS (wide_walk.h). Feeds trace_packet.cl.
 #ifndef GNOMON_PACKET_WALK_H
 #define GNOMON_PACKET_WALK_H
 
@@ -68,10 +68,53 @@ static inline uint rays_in_box(const GnPacket* p, uint g, const GnSlotBox* box) 
   return lanes_not_above16(near, far) & p->active[g];
 }
 
-static inline void walk_packet(GnPacket* p, __global const GnWideNode* nodes, __global const uint* leaves,
-                               __global const float8* rays, int any_hit) {
+#if GN_REGIONS
+// Those of sixteen rays that are within a region whole.
+static inline uint rays_within(const GnPacket* p, uint g, __global const GnRegion* region) {
+  const float16 x = p->direction[0][g], y = p->direction[1][g], z = p->direction[2][g], tmin = p->tmin[g];
+  const float16 at_x = p->origin[0][g] + tmin * x, at_y = p->origin[1][g] + tmin * y, at_z = p->origin[2][g] + tmin * z;
+  const float16 largest = GN_MAX8(GN_MAX8(fabs(x), fabs(y)), fabs(z));
+  const float16 far = GN_MAX8(GN_MAX8(fabs(p->origin[0][g]), fabs(p->origin[1][g])), fabs(p->origin[2][g]));
+  const float16 reach = far + tmin * largest, none = (float16)(0.0f);  // no tmin is below 0 in a packet
+  const float16 margin = GN_AREA_MARGIN * GN_MAX8(reach, (float16)(region->size)), steeper = GN_AREA_SLOPE * largest;
+  float16 end = (float16)(INFINITY), length;
+  uint k, within = 65535u;
+  for (k = 0u; k < 3u; ++k) {
+    const float side = p->near_side[k] & 32u ? region->lo[k] : region->hi[k];
+    const float16 leaves_at = (side - p->origin[k][g]) * p->inverse[k][g];
+    end = GN_MIN8(leaves_at, end);
+  }
+  end *= end < 0.0f ? (float16)(1.0f - GN_SLAB_SLACK) : (float16)(1.0f + GN_SLAB_SLACK);
+  end = GN_MIN8(end, p->tmax[g]);
+  length = (end - tmin) * GN_REGION_LONGER;
+  for (k = 0u; k < 8u && within != 0u; ++k) {
+    const float a = region->planes[0][k], b = region->planes[1][k], c = region->planes[2][k];
+    const float16 at = a * at_x + b * at_y + c * at_z + region->planes[3][k] - margin;
+    const float16 slope = a * x + b * y + c * z - steeper;
+    within &= lanes_not_above16(none, at) & lanes_not_above16(none, at + slope * length);
+  }
+  return within;
+}
+
+// As root_of, for all rays of a packet.
+static inline uint root_of_packet(const GnPacket* p, __global const GnRegion* regions, uint count) {
+  uint i, g;
+  for (i = 0u; i < count; ++i) {
+    for (g = 0u; g < p->groups && rays_within(p, g, regions + i) == 65535u; ++g) {
+    }
+    if (g == p->groups) return regions[i].root;
+  }
+  return 0u;
+}
+#define GN_ROOT_OF_PACKET(p, batch) root_of_packet(p, (batch)->regions, (batch)->region_count)
+#else
+#define GN_ROOT_OF_PACKET(p, batch) 0u
+#endif
+
+static inline void walk_packet(GnPacket* p, const GnWideBatch* batch, int any_hit) {
+  __global const GnWideNode* nodes = batch->nodes;
   uint places[GN_WIDE_STACK], keys[GN_WIDE_STACK];
-  uint height = 0u, current = 0u;
+  uint height = 0u, current = GN_ROOT_OF_PACKET(p, batch);
   for (;;) {
     float8 entries;
     uint met = boxes_near_packet(p, nodes + current, &entries);
@@ -125,7 +168,7 @@ static inline void walk_packet(GnPacket* p, __global const GnWideNode* nodes, __
       }
       GN_WORK(p, boxes, p->groups);
       if (some == 0u) continue;
-      test_packet_leaf(p, rays, leaves, link, masks, any_hit);
+      test_packet_leaf(p, batch->rays, batch->leaves, link, masks, any_hit);
       if (any_hit) {
         uint left = 0u;
         for (g = 0u; g < p->groups; ++g) left |= p->active[g];

@@ -79,14 +79,14 @@ static inline uint next_packet(GnPacket* p, GnChoice* choice, __global const flo
 // Closest hit of rays [0, count). invalid_rays counts rays that are not traceable; they miss.
 __kernel void trace_closest(__global const GnWideNode* nodes, __global const uint* leaves,
                             __global const float8* rays, __global float4* hits, volatile __global uint* invalid_rays,
-                            __global GnRayCounters* counters, uint count GN_FRAME_PARAMETER) {
+                            __global GnRayCounters* counters, uint count GN_MORE_PARAMETERS) {
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
   const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
   const float size = GN_SCENE_SIZE(nodes);
   GnPacket packet;
   GnFound found;
   GnChoice choice = {0u, 1u, 0u};  // for closest hits packets pay wherever there are any (host/notes/packets.md)
-  const GnWideBatch batch = {nodes, leaves, rays, hits, 0, invalid_rays, counters, &found GN_FRAME_OF_BATCH};
+  const GnWideBatch batch = {nodes, leaves, rays, hits, 0, invalid_rays, counters, &found GN_MORE_OF_BATCH};
   GN_FRAME_OF_PACKET(packet)
   found.count = 0u;
   while (index < end) {
@@ -96,7 +96,7 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const uin
     if (groups == 0u) break;
     begin_choice(&packet.work, &choice);
     expect_range(rays + start + 16u * groups, GN_PACKET * sizeof(float8));  // those of the next
-    walk_packet(&packet, nodes, leaves, rays, 0);
+    walk_packet(&packet, &batch, 0);
     write_packet(&packet, &found, leaves, rays, hits);
     store_packet_counters(&packet, counters);
     index = start + 16u * groups;
@@ -107,11 +107,11 @@ __kernel void trace_closest(__global const GnWideNode* nodes, __global const uin
 // Any hit of rays [0, count): occluded receives 1 or 0.
 __kernel void trace_any(__global const GnWideNode* nodes, __global const uint* leaves,
                         __global const float8* rays, __global uint* occluded, volatile __global uint* invalid_rays,
-                        __global GnRayCounters* counters, uint count GN_FRAME_PARAMETER) {
+                        __global GnRayCounters* counters, uint count GN_MORE_PARAMETERS) {
   uint index = (uint)get_global_id(0) * GN_RAYS_PER_ITEM;
   const uint end = gn_run_end(index, count, GN_RAYS_PER_ITEM);
   const float size = GN_SCENE_SIZE(nodes);
-  const GnWideBatch batch = {nodes, leaves, rays, 0, occluded, invalid_rays, counters, 0 GN_FRAME_OF_BATCH};
+  const GnWideBatch batch = {nodes, leaves, rays, 0, occluded, invalid_rays, counters, 0 GN_MORE_OF_BATCH};
   GnPacket packet;
   GnChoice choice = {0u, 0u, 0u};
   GN_FRAME_OF_PACKET(packet)
@@ -122,7 +122,7 @@ __kernel void trace_any(__global const GnWideNode* nodes, __global const uint* l
     if (groups == 0u) break;
     begin_choice(&packet.work, &choice);
     expect_range(rays + start + 16u * groups, GN_PACKET * sizeof(float8));  // those of the next
-    walk_packet(&packet, nodes, leaves, rays, 1);
+    walk_packet(&packet, &batch, 1);
     choose(&packet.work, 16u * groups, &choice);
     for (i = 0u; i < 16u * groups; ++i) occluded[start + i] = (packet.found[i >> 4] >> (i & 15u)) & 1u;
     store_packet_counters(&packet, counters);

@@ -5,13 +5,21 @@
 // a leaf: while one's node is on its way from memory, others compute; steps of different rays, which do not depend on each
 // other, run side by side; and neither what a ray looks at next nor whether it is done decides a branch.
 // Options: GN_WIDE_STACK (at least 7 * depth of the wide tree + 9), GN_COUNTERS, GN_PORTABLE (eight.h), GN_RAYS_AT_ONCE
-// (1: one after the other, each in a loop of its own, for devices that end long loops), GN_FRAME (wide_leaf.h).
+// (1: one after the other, each in a loop of its own, for devices that end long loops), GN_FRAME (wide_leaf.h), GN_REGIONS
+// (1: rays within a region whole begin at the root of its tree; not beside GN_FRAME).
 // Feeds trace_wide.cl, trace_packet.cl.
 #ifndef GNOMON_WIDE_WALK_H
 #define GNOMON_WIDE_WALK_H
 
+#ifndef GN_REGIONS
+#define GN_REGIONS 0
+#endif
+
 #include "ahead.h"
 #include "settle.h"
+#if GN_REGIONS
+#include "within.h"
+#endif
 
 #ifndef GN_WIDE_STACK
 #define GN_WIDE_STACK 256
@@ -98,17 +106,30 @@ typedef struct GnWideBatch {
 #if GN_FRAME
   __global const GnBoxFrame* boxes;
 #endif
+#if GN_REGIONS
+  __global const GnRegion* regions;
+  uint region_count;
+#endif
 } GnWideBatch;
 
-// What kernels take beyond the others' parameters for boxes in a frame, and put at a batch's end.
+// What kernels take beyond the others' parameters for boxes in a frame, or for regions, and put at a batch's end.
 #if GN_FRAME
-#define GN_FRAME_PARAMETER , __global const GnBoxFrame* boxes
-#define GN_FRAME_OF_BATCH , boxes
+#define GN_MORE_PARAMETERS , __global const GnBoxFrame* boxes
+#define GN_MORE_OF_BATCH , boxes
 #define GN_TAKE_RAY(out, ray, batch) set_wide_ray(out, ray, (batch)->boxes)
 #else
-#define GN_FRAME_PARAMETER
-#define GN_FRAME_OF_BATCH
 #define GN_TAKE_RAY(out, ray, batch) set_wide_ray(out, ray)
+#endif
+#if GN_REGIONS
+#define GN_MORE_PARAMETERS , __global const GnRegion *regions, uint region_count
+#define GN_MORE_OF_BATCH , regions, region_count
+#define GN_ROOT_OF(wide_ray, ray, batch) root_of(ray, (wide_ray)->inverse, (batch)->regions, (batch)->region_count)
+#else
+#define GN_ROOT_OF(wide_ray, ray, batch) 0u
+#endif
+#ifndef GN_MORE_PARAMETERS
+#define GN_MORE_PARAMETERS
+#define GN_MORE_OF_BATCH
 #endif
 
 // Four cache lines: of a node all, of a leaf what most have.
@@ -216,6 +237,7 @@ static inline uint take_up(GnWalker* walker, const GnWideBatch* batch, uint inde
   walker->keys[0] = any_hit && !GN_EIGHT_AVX512 ? 1u : 0u;
   if (gn_ray_is_valid(&ray)) {
     GN_TAKE_RAY(&walker->ray, &ray, batch);
+    walker->current = GN_ROOT_OF(&walker->ray, &ray, batch);
     return 1u;
   }
   atomic_inc(batch->invalid_rays);

@@ -1,5 +1,6 @@
 #include "gnomon/areas/areas_from_scene.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace gnomon {
@@ -13,6 +14,9 @@ constexpr double kNearShare = 0x1p-10;
 // Wider frusta have corners so far out that the ball is the smaller region: at 75 degrees to the side they
 // are 5.4 times as far as the range.
 constexpr double kWidestCone = 1.3089969389957472;  // half angle, 75 degrees
+
+// Each takes a test of every sampled ray.
+constexpr std::size_t kMostBounded = 64;
 
 Vec3d to_double(const float* v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
@@ -135,6 +139,17 @@ std::vector<LightArea> areas_of_lights(const Scene& scene) {
 std::optional<InfluenceArea> area_of_light(const Scene& scene, const Light& light) {
   if (scene.triangles.empty()) return std::nullopt;
   return LightAreas(scene).area_of(light);
+}
+
+std::vector<InfluenceArea> bounded_areas_of_lights(const Scene& scene) {
+  std::vector<InfluenceArea> areas;
+  if (scene.triangles.empty()) return areas;
+  const LightAreas maker(scene);
+  for (std::size_t i = 0; i < std::min(kMostBounded, scene.lights.size()); ++i) {
+    if (scene.lights[i].kind == LightKind::kDirectional) continue;
+    if (auto area = maker.area_of(scene.lights[i])) areas.push_back(*area);
+  }
+  return areas;
 }
 
 }  // namespace gnomon

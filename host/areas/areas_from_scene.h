@@ -27,4 +27,8 @@ struct LightArea {
 // The area of one light, which need not be the scene's own; nothing where areas_of_lights would leave it out.
 [[nodiscard]] std::optional<InfluenceArea> area_of_light(const Scene& scene, const Light& light);
 
+// Areas of lights that may leave part of the scene dark, for a plan's rays to be told of: of the first 64
+// lights, suns apart.
+[[nodiscard]] std::vector<InfluenceArea> bounded_areas_of_lights(const Scene& scene);
+
 }  // namespace gnomon

@@ -63,4 +63,23 @@ GnArea to_shared(const InfluenceArea& area, double tolerance) {
   return out;
 }
 
+GnRegion to_region(const InfluenceArea& area, const Box3d& scene) {
+  if (area.kind() == AreaKind::kOmni) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "rays are tested against a region's planes, and a ball has none: take the box around it");
+  }
+  const GnArea shared = to_shared(area);
+  GnRegion out{};
+  for (float& offset : out.planes[3]) offset = GN_EVERYWHERE;
+  for (std::size_t i = 0; i < GN_AREA_PLANES; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) out.planes[k][i] = shared.planes[4 * i + k];
+  }
+  const FloatBox around = float_box_around(scene);
+  std::copy_n(around.lo.data(), 3, out.lo);
+  std::copy_n(around.hi.data(), 3, out.hi);
+  out.size = shared.size;
+  out.root = GN_NONE;
+  return out;
+}
+
 }  // namespace gnomon

@@ -4,6 +4,7 @@
 
 #include "gnomon/areas/influence_area.h"
 #include "gnomon/shared/area_layout.h"
+#include "gnomon/shared/region.h"
 
 namespace gnomon {
 
@@ -12,6 +13,10 @@ namespace gnomon {
 // coordinate is beyond 2^48 or below 2^-40 (float would overflow or underflow), or the tolerance is not a
 // number from 0 on.
 [[nodiscard]] GnArea to_shared(const InfluenceArea& area, double tolerance = 0.01);
+
+// The region of an area as traversal tests rays against it. scene: around all triangles. Its root is GN_NONE.
+// Throws as to_shared, and Error{kInvalidArgument} for a ball, which has no planes.
+[[nodiscard]] GnRegion to_region(const InfluenceArea& area, const Box3d& scene);
 
 // The smallest float box around a box within float's range.
 struct FloatBox {

@@ -31,11 +31,6 @@ void heed_loop_limit(const cl::DeviceInfo& device, std::uint32_t triangles) {
                   " triangles; trace the binary tree there or use another device");
 }
 
-cl::Buffer leaf_buffer(const cl::Context& context, std::uint32_t places) {
-  return context.create_buffer(
-      "wide_leaves", (std::size_t{places} * GN_TRIANGLE_WORDS + GN_LEAF_SLACK) * sizeof(std::uint32_t));
-}
-
 class Collapser {
  public:
   Collapser(const cl::Context& context, const DeviceBvh& tree, const CollapseOptions& options,
@@ -167,6 +162,11 @@ class Collapser {
 
 }  // namespace
 
+cl::Buffer leaf_buffer(const cl::Context& context, std::uint32_t places) {
+  return context.create_buffer(
+      "wide_leaves", (std::size_t{places} * GN_TRIANGLE_WORDS + GN_LEAF_SLACK) * sizeof(std::uint32_t));
+}
+
 DeviceWideBvh collapse_device(const cl::Context& context, const DeviceBvh& tree,
                               const CollapseOptions& options, BuildReport* out,
                               std::span<const float> slot_keys, std::span<const float> weights) {
@@ -199,7 +199,7 @@ WideBvh download_wide(const cl::Context& context, const DeviceWideBvh& tree) {
   return {
       context.download_values<WideNode>(tree.nodes, tree.node_count),
       context.download_values<std::uint32_t>(tree.leaves, std::size_t{tree.place_count} * GN_TRIANGLE_WORDS),
-      tree.depth, tree.frame};
+      tree.depth, tree.frame, tree.regions};
 }
 
 }  // namespace gnomon

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "gnomon/device/build_device.h"
 #include "gnomon/tree/wide.h"
@@ -20,6 +21,7 @@ struct DeviceWideBvh {
   std::uint32_t place_count = 0;  // of leaves
   std::uint32_t depth = 0;
   std::optional<BoxFrame> frame{};  // Bvh's
+  std::vector<GnRegion> regions{};  // WideBvh's
   [[nodiscard]] std::uint64_t bytes() const { return nodes.bytes + leaves.bytes; }
 };
 
@@ -31,6 +33,9 @@ struct DeviceWideBvh {
                                             BuildReport* report = nullptr,
                                             std::span<const float> slot_keys = {},
                                             std::span<const float> weights = {});
+
+// For so many places, with the slack that vectors read into.
+[[nodiscard]] cl::Buffer leaf_buffer(const cl::Context& context, std::uint32_t places);
 
 // Copies a wide tree to the host.
 [[nodiscard]] WideBvh download_wide(const cl::Context& context, const DeviceWideBvh& tree);

@@ -8,6 +8,7 @@
 #include "gnomon/cl/program.h"
 #include "gnomon/device/radix_sort.h"
 #include "gnomon/tree/box_frame.h"
+#include "gnomon/tree/regions.h"
 
 namespace gnomon {
 namespace {
@@ -110,6 +111,7 @@ class Compactor {
 DeviceCompactBvh compact_device(const cl::Context& context, const DeviceWideBvh& tree, BuildReport* out) {
   const auto start = std::chrono::steady_clock::now();
   refuse_frame(tree.frame, "the compact layout");
+  refuse_regions(tree.regions, "the compact layout");
   Compactor compactor(context, tree);
   DeviceCompactBvh compact = compactor.run();
   if (out != nullptr) {

@@ -43,7 +43,8 @@ std::string TracePlan::program_options() const {
     return "-DGN_WIDE_STACK=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
            " -DGN_RAYS_PER_ITEM=" + std::to_string(rays_per_item) +
            " -DGN_RAYS_AT_ONCE=" + std::to_string(rays_at_once) + " -DGN_PORTABLE=" + (portable ? "1" : "0") +
-           (fast ? " -DGN_FAST=1" : "") + (framed ? " -DGN_FRAME=1" : "") + (choose ? " -DGN_CHOOSE=1" : "");
+           (fast ? " -DGN_FAST=1" : "") + (framed ? " -DGN_FRAME=1" : "") +
+           (regions != 0 ? " -DGN_REGIONS=1" : "") + (choose ? " -DGN_CHOOSE=1" : "");
   }
   return "-DGN_STACK_SIZE=" + std::to_string(stack_size) + " -DGN_COUNTERS=" + (counters ? "1" : "0") +
          " -DGN_STEP_LIMIT=" + std::to_string(step_limit);

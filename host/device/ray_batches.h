@@ -24,9 +24,10 @@ struct TracePlan {
   bool wide = false;
   bool compact = false;
   bool portable = false;
-  bool fast = false;    // Accuracy::kFast
-  bool choose = false;  // packets where they pay, not wherever there are any
-  bool framed = false;  // of a wide tree whose boxes stand in a frame
+  bool fast = false;          // Accuracy::kFast
+  bool choose = false;        // packets where they pay, not wherever there are any
+  bool framed = false;        // of a wide tree whose boxes stand in a frame
+  std::uint32_t regions = 0;  // of a wide tree, with trees of their own
   [[nodiscard]] std::string program_options() const;
   [[nodiscard]] std::size_t batch_of(std::size_t rays) const;  // rays per launch
 };

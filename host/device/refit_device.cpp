@@ -9,6 +9,7 @@
 #include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/build_reference.h"
 #include "gnomon/tree/refit.h"
+#include "gnomon/tree/regions.h"
 
 namespace gnomon {
 
@@ -119,6 +120,7 @@ void refit_device(const cl::Context& context, DeviceBvh& tree, std::span<const T
 void refit_device(const cl::Context& context, DeviceWideBvh& tree, std::span<const Triangle> triangles) {
   require_count(triangles.size(), tree.triangle_count);
   refuse_frame(tree.frame, "refitting");
+  refuse_regions(tree.regions, "refitting");
   if (triangles.empty()) return;
   Refit refit(context, triangles);
   refit.check_triangles();

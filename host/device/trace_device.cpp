@@ -161,6 +161,11 @@ void Tracer::trace_wide(const DeviceWideBvh& tree, const TraceOptions& options) 
     frame_ = context_.create_buffer("box_frame", sizeof(BoxFrame));
     context_.upload_values<BoxFrame>(frame_, std::span(&*tree.frame, 1));
   }
+  if (!tree.regions.empty()) {
+    plan_->regions = static_cast<std::uint32_t>(tree.regions.size());
+    regions_ = context_.create_buffer("regions", tree.regions.size() * sizeof(GnRegion));
+    context_.upload_values<GnRegion>(regions_, tree.regions);
+  }
   sort_ = sort_in<GnWideNode>(context_, tree.nodes, options, tree.frame ? &*tree.frame : nullptr);
   nodes_ = tree.nodes.mem.get();
   triangles_ = tree.leaves.mem.get();
@@ -199,6 +204,7 @@ cl::Handle<cl_event> Tracer::enqueue(const cl::Handle<cl_kernel>& kernel, const 
   cl::set_arguments(kernel.get(), nodes_, triangles_, launch.rays, launch.answers, invalid_, launch.counters,
                     launch.count);
   if (plan_->framed) cl::set_arguments_from(kernel.get(), 7, frame_);
+  if (plan_->regions != 0) cl::set_arguments_from(kernel.get(), 7, regions_, plan_->regions);
   if (plan_->step_limit != 0) {
     cl::set_arguments_from(kernel.get(), 7, passes.states, passes.waiting, passes.entries, passes.paused,
                            pass);

@@ -154,7 +154,8 @@ class Tracer {
   cl::Handle<cl_kernel> any_;
   cl::Buffer invalid_;
   cl::Buffer no_counters_;
-  cl::Buffer frame_;  // that boxes stand in; none: empty
+  cl::Buffer frame_;    // that boxes stand in; none: empty
+  cl::Buffer regions_;  // with trees of their own; none: empty
 };
 
 }  // namespace gnomon

@@ -12,6 +12,7 @@
 #include "gnomon/base/error.h"
 #include "gnomon/shared/compact_math.h"
 #include "gnomon/tree/box_frame.h"
+#include "gnomon/tree/regions.h"
 
 namespace gnomon {
 namespace {
@@ -124,6 +125,7 @@ void throw_compact_leaf_too_large(std::uint32_t triangles) {
 
 CompactBvh compact_reference(const WideBvh& wide) {
   refuse_frame(wide.frame, "the compact layout");
+  refuse_regions(wide.regions, "the compact layout");
   return Compaction(wide).run();
 }
 

@@ -9,6 +9,7 @@
 #include "gnomon/shared/cost_math.h"
 #include "gnomon/tree/box_frame.h"
 #include "gnomon/tree/build_reference.h"
+#include "gnomon/tree/regions.h"
 
 namespace gnomon {
 
@@ -121,8 +122,9 @@ void refit_reference(Bvh& bvh, std::span<const GnTriangle> triangles) {
 }
 
 void refit_reference(WideBvh& wide, std::span<const GnTriangle> triangles) {
-  require_count(triangles.size(), triangles_of(wide));
   refuse_frame(wide.frame, "refitting");
+  refuse_regions(wide.regions, "refitting");
+  require_count(triangles.size(), triangles_of(wide));
   if (!triangles.empty()) static_cast<void>(WideRefit(wide, triangles).node(0));
 }
 

@@ -35,7 +35,9 @@ class Walk {
   }
 
   void run() {
-    std::vector<Waiting> waiting{{0, 0}};
+    const std::uint32_t region = gn_region_of(&ray_, frame_.inverse, wide_.regions.data(),
+                                              static_cast<std::uint32_t>(wide_.regions.size()));
+    std::vector<Waiting> waiting{{0, region == GN_NONE ? 0 : wide_.regions[region].root}};
     while (!waiting.empty()) {
       const Waiting next = waiting.back();
       waiting.pop_back();
@@ -134,7 +136,28 @@ class Walk {
     return gn_triangle_resolve(&frame_, t.v0, t.v1, t.v2, verdict, &hit) != 0;
   }
 
+  // Whether two triangles that are met for certain lie in one plane across an axis and have the same t there.
+  [[nodiscard]] bool meet_at_once(std::uint32_t seat, std::uint32_t other) const {
+    const GnTriangle a = triangle_in(wide_, seat);
+    const GnTriangle b = triangle_in(wide_, other);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const float plane = a.v0[k];
+      const auto is_in = [&](const float* corner) { return corner[k] == plane; };
+      if (is_in(a.v1) && is_in(a.v2) && is_in(b.v0) && is_in(b.v1) && is_in(b.v2))
+        return gn_plane_has_one_t(&frame_, k, plane) != 0;
+    }
+    return false;
+  }
+
   void test_exactly(std::uint32_t seat, int verdict) {
+    const std::uint32_t number = number_in(wide_, seat);
+    if (found_ && number == best.primitive) return;  // in another leaf of a tree of parts
+    if (verdict > 0 && pending_ && meet_at_once(seat_, seat)) {
+      if (number > best.primitive) return;
+      seat_ = seat;
+      best.primitive = number;
+      return;
+    }
     steps.exact += 1;
     Hit hit{};
     if (!resolve(seat, verdict, hit) || !(hit.t >= ray_.tmin && hit.t <= ray_.tmax)) return;

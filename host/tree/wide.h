@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "gnomon/shared/region.h"
 #include "gnomon/shared/wide_layout.h"
 #include "gnomon/tree/bvh.h"
 #include "gnomon/tree/bvh_check.h"
@@ -35,6 +36,7 @@ struct WideBvh {
   std::vector<std::uint32_t> leaves;  // places of GN_TRIANGLE_WORDS words (gnomon/shared/wide_layout.h)
   std::uint32_t depth = 0;            // nodes on the longest way from the root to a leaf
   std::optional<BoxFrame> frame{};    // Bvh's
+  std::vector<GnRegion> regions{};    // that have trees of their own behind this one (regions.h)
   [[nodiscard]] std::size_t places() const { return leaves.size() / GN_TRIANGLE_WORDS; }
 };
 

@@ -36,6 +36,11 @@ GN_INLINE gn_u32 gn_leaf_link(gn_u32 place, gn_u32 triangles) {
 }
 GN_INLINE gn_u32 gn_link_place(gn_u32 link) { return link & (GN_MAX_PLACES - 1u); }
 GN_INLINE gn_u32 gn_leaf_places(gn_u32 triangles) { return triangles < GN_LONG_LEAF ? triangles : triangles + 1u; }
+// A link of a tree whose first node and place are no longer the first.
+GN_INLINE gn_u32 gn_moved_link(gn_u32 link, gn_u32 nodes_before, gn_u32 places_before) {
+  if (link == GN_NONE) return link;
+  return link + ((link & GN_LEAF_LINK) != 0u ? places_before : nodes_before);
+}
 GN_INLINE gn_u32 gn_blocks_of(gn_u32 triangles) { return (triangles + GN_WIDTH - 1u) / GN_WIDTH; }
 
 // The places of a leaf's triangles.

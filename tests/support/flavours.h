@@ -48,10 +48,8 @@ inline void require_same_answers(const Traced& a, const Traced& b) {
 }
 
 // Visits and hits of the device are the reference's. Divisions may be rounded otherwise on a GPU.
-inline void require_reference_work(const DeviceBvh& tree, const Triangles& triangles, const Rays& rays,
-                                   const Traced& traced) {
+inline void require_reference_work(const WideBvh& wide, const Rays& rays, const Traced& traced) {
   if (!context().device().is_cpu || !context().device().fp64) return;
-  const auto wide = collapse_reference(download_bvh(context(), tree), triangles);
   const auto closest = trace_wide_reference(wide, rays, false);
   const auto any = trace_wide_reference(wide, rays, true);
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -63,6 +61,11 @@ inline void require_reference_work(const DeviceBvh& tree, const Triangles& trian
     REQUIRE(traced.any.counters[i].boxes == any.counters[i].boxes);
     REQUIRE(traced.any.counters[i].triangles == any.counters[i].triangles);
   }
+}
+
+inline void require_reference_work(const DeviceBvh& tree, const Triangles& triangles, const Rays& rays,
+                                   const Traced& traced) {
+  require_reference_work(collapse_reference(download_bvh(context(), tree), triangles), rays, traced);
 }
 
 // Devices that end loops are never given packets unless a caller demands them, and Mesa takes minutes to

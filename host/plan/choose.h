@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "gnomon/areas/influence_area.h"
 #include "gnomon/base/progress.h"
 #include "gnomon/plan/optimise_for_rays.h"
 #include "gnomon/plan/race.h"
@@ -28,6 +29,8 @@ struct PlanRays {
   double expected = 0.0;   // rays of this kind that will be traced; >= 0
   // Neighbours in a batch run through one point or one way, as in a picture: tracers may take them together.
   bool together = false;
+  // Where they may run together, if that is known: lights' influence areas, say. For local trees.
+  std::vector<InfluenceArea> regions{};
 };
 
 // What work costs beside a box test of a device's tracer, in whose units plans reckon. Defaults are rounded
@@ -88,6 +91,11 @@ struct PlanOptions {
   // baseline: 1.1 to 1.4 measured (host/notes/ray-aware.md).
   bool packets = false;
   double packet_work = 1.3;
+  // Trees of part of the triangles beside one of all may be kept (OrderedTree::local): only for callers whose
+  // tracer is wide, packet or trace_ordered, and who keep trees in no file. A region may hold so much of the
+  // triangles.
+  bool local_trees = false;
+  double most_local = 0.5;
   bool keep_tried = false;  // Plan::trees has every candidate that was made, not only what is kept
 
   // Throws Error{kInvalidArgument} naming the option, its value and its range.
@@ -106,9 +114,13 @@ struct PlanOptions {
 // "mix", "mix-rays": built by the mixture from the start, and then by sampled rays.
 // "light-mix", "light-rays": as "mix" and "mix-rays", their boxes in a frame along the rays; made for
 // PlanOptions::light_space alone.
+// "local-rays": a tree of its own, made as "sah-rays", for rays that are whole within a region which leaves
+// most triangles out; made for PlanOptions::local_trees alone. Others go through "sah-rays" (of "auto":
+// through what it keeps without).
 // All but "sah" and "best" have the learnt order where any hit is asked for; "sah-order" is for any hit only.
 // "auto" tries "sah-rays" ("best-rays"), and for any hit "sah-order" ("best-order") where that is not kept;
-// for oblique rays "light-rays" before them, and where that saves much nothing else.
+// for oblique rays "light-rays" before them, and where that saves much nothing else; and "local-rays" at last
+// where PlanRays::regions, or the region of rays that are all of one pencil or bundle, hold few triangles.
 [[nodiscard]] const std::vector<std::string>& candidate_names();
 
 // A tree of the plan.
@@ -129,6 +141,12 @@ struct Trial {
   double saving = 0.0;    // units it saves over the expected rays
 };
 
+// A local tree that is kept.
+struct LocalUse {
+  std::size_t triangles = 0;
+  double share = 0.0;  // of the rays it was fitted to, that are within its region
+};
+
 // What was decided for one kind of rays.
 struct Decision {
   std::string rays;
@@ -144,6 +162,11 @@ struct Decision {
   double obliquity = 1.0;      // of the rays (light_space.h)
   // What they see of the baseline's boxes in a frame along them, beside those as they are; 0: not reckoned.
   double framed_share = 0.0;
+  // Regions that a tenth of the rays or more are within whole; the least share of the triangles that one
+  // holds, 1 where all hold more than may be; and the local trees that are kept.
+  std::size_t regions = 0;
+  double least_members = 1.0;
+  std::vector<LocalUse> local;
   std::vector<Trial> trials;
 };
 

@@ -22,7 +22,20 @@ Json json_of(const Trial& trial) {
           {"saving_units", trial.saving}};
 }
 
+Json json_of(const std::vector<RegionTree>& local) {
+  Json out = Json::array();
+  for (const RegionTree& tree : local) {
+    out.push_back({{"hash", tree_hash(tree.bvh)},
+                   {"nodes", tree.bvh.nodes.size()},
+                   {"triangles", tree.bvh.primitives.size()}});
+  }
+  return out;
+}
+
 Json json_of(const Decision& decision) {
+  Json local = Json::array();
+  for (const LocalUse& use : decision.local)
+    local.push_back({{"triangles", use.triangles}, {"share_of_rays", use.share}});
   Json trials = Json::array();
   for (const Trial& trial : decision.trials) trials.push_back(json_of(trial));
   return {{"rays", decision.rays},
@@ -38,6 +51,10 @@ Json json_of(const Decision& decision) {
           {"light_space",
            {{"obliquity", decision.obliquity},
             {"framed_share", decision.framed_share > 0.0 ? Json(decision.framed_share) : Json(nullptr)}}},
+          {"local",
+           {{"regions", decision.regions},
+            {"least_share_of_triangles", decision.regions > 0 ? Json(decision.least_members) : Json(nullptr)},
+            {"trees", local}}},
           {"trials", trials}};
 }
 
@@ -52,7 +69,8 @@ std::string to_json(const Plan& plan) {
                      {"bytes", tree.bytes},
                      {"build_units", tree.build_units},
                      {"learnt_order", !tree.tree.ranks.empty()},
-                     {"boxes_in_frame", tree.tree.bvh.frame.has_value()}});
+                     {"boxes_in_frame", tree.tree.bvh.frame.has_value()},
+                     {"local", json_of(tree.tree.local)}});
   }
   Json decisions = Json::array();
   for (const Decision& decision : plan.decisions) decisions.push_back(json_of(decision));

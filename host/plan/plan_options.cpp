@@ -19,8 +19,8 @@ void require(bool ok, const std::string& option, const std::string& value, const
 
 const std::vector<std::string>& candidate_names() {
   static const std::vector<std::string> names{
-      "sah",  "sah-order",  "sah-mix",   "sah-rays", "sah-segments", "sah-seen",  "seen-rays",
-      "best", "best-order", "best-rays", "mix",      "mix-rays",     "light-mix", "light-rays"};
+      "sah",        "sah-order", "sah-mix", "sah-rays", "sah-segments", "sah-seen",   "seen-rays", "best",
+      "best-order", "best-rays", "mix",     "mix-rays", "light-mix",    "light-rays", "local-rays"};
   return names;
 }
 
@@ -56,6 +56,7 @@ void PlanOptions::check() const {
   for (const double work : {framed_work, packet_work})
     require(work >= 1.0 && std::isfinite(work), "framed_work or packet_work", std::to_string(work),
             "of finite numbers >= 1");
+  require(most_local >= 0.0 && most_local <= 1.0, "most_local", std::to_string(most_local), "[0, 1]");
   race.check();
   for (const double price : {prices.build_start, prices.build, prices.move_start, prices.move,
                              prices.move_seen, prices.move_segments, prices.finish, prices.divide,

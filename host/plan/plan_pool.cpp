@@ -104,6 +104,7 @@ void PlanPool::move_by_segments(const Space& space, Entry& entry) {
 }
 
 void PlanPool::aim_at(const PlanRays& rays) {
+  rays_ = &rays;
   query_ = rays.query;
   fit_.clear();
   for (Ray ray : rays.fit) {

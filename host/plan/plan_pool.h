@@ -5,6 +5,7 @@
 
 #include "gnomon/plan/choose.h"
 #include "gnomon/plan/light_space.h"
+#include "gnomon/plan/local_sets.h"
 
 namespace gnomon {
 
@@ -36,6 +37,12 @@ class PlanPool {
     double fit_gain = 0.0;
   };
   [[nodiscard]] Entry make(const std::string& name);
+  // Regions of the rays that leave triangles out; with `detected`, among those that detect finds, too.
+  [[nodiscard]] LocalSets find_local(bool detected);
+  // What their trees will take at most.
+  [[nodiscard]] double likely_local_price(const LocalSets& local) const;
+  // Trees over their triangles; other rays go through `others`, which costs nothing here.
+  [[nodiscard]] Entry make_local(const LocalSets& local, const PlanTree& others);
 
  private:
   // What trees are made of: the scene and the rays as they are, or turned.
@@ -54,6 +61,7 @@ class PlanPool {
   void move_by_segments(const Space& space, Entry& entry);
   void fit(const Bvh& from, const Space& space, Entry& entry);
   void learn(PlanTree& tree, const Space& space);
+  [[nodiscard]] PlanTree tree_for(const LocalSet& set, const std::vector<Ray>& rays, Entry& entry) const;
   [[nodiscard]] float own_share() const;  // of the rays' own measure in weights
   [[nodiscard]] double build_price() const;
   [[nodiscard]] double move_price() const;
@@ -68,6 +76,7 @@ class PlanPool {
   double baseline_units_ = 0.0;
   double work_ = 0.0;
   Query query_ = Query::kClosest;
+  const PlanRays* rays_ = nullptr;
   std::vector<Ray> fit_;
   double expected_cost_ = -1.0;  // negative: not reckoned yet
   std::array<float, 3> weights_{1.0F, 1.0F, 1.0F};

@@ -75,17 +75,90 @@ GnRayCounters count_every(const Bvh& bvh, Ray ray) {
 
 }  // namespace
 
-std::vector<double> ray_costs(const OrderedTree& tree, std::span<const Triangle> triangles,
-                              std::span<const Ray> rays, Query query) {
+std::vector<std::vector<std::uint32_t>> rays_by_tree(const OrderedTree& tree, std::span<const Ray> rays) {
+  std::vector<std::vector<std::uint32_t>> out(tree.local.size() + 1);
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
+    const std::uint32_t region = region_of(tree.local, rays[i]);
+    out[region == GN_NONE ? 0 : region + 1].push_back(i);
+  }
+  return out;
+}
+
+namespace {
+
+// A ray's tree and ranks.
+struct Part {
+  const Bvh& bvh;
+  std::span<const float> ranks;
+};
+
+Part part_of(const OrderedTree& tree, std::size_t place) {
+  if (place == 0) return {tree.bvh, tree.ranks};
+  return {tree.local[place - 1].bvh, tree.local[place - 1].ranks};
+}
+
+using Places = std::vector<std::uint32_t>;
+
+// Calls visit(tree, rays, their places) for each tree that has rays.
+template <typename Visit>
+void for_each_part(const OrderedTree& tree, std::span<const Ray> rays, const Visit& visit) {
+  const std::vector<std::vector<std::uint32_t>> places = rays_by_tree(tree, rays);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i].empty()) continue;
+    std::vector<Ray> own;
+    own.reserve(places[i].size());
+    for (const std::uint32_t place : places[i]) own.push_back(rays[place]);
+    visit(i, own, places[i]);
+  }
+}
+
+}  // namespace
+
+ReferenceTrace trace_ordered(const OrderedTree& tree, std::span<const Triangle> triangles,
+                             std::span<const Ray> rays, bool any_hit) {
+  ReferenceTrace out;
+  out.hits.resize(rays.size());
+  out.counters.resize(rays.size());
+  for_each_part(tree, rays, [&](std::size_t place, const std::vector<Ray>& own, const Places& places) {
+    const Part part = part_of(tree, place);
+    const ReferenceTrace trace = trace_reference(part.bvh, triangles, own, any_hit, part.ranks);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      out.hits[places[i]] = trace.hits[i];
+      out.counters[places[i]] = trace.counters[i];
+    }
+    out.invalid_rays += trace.invalid_rays;
+  });
+  return out;
+}
+
+namespace {
+
+std::vector<double> costs_in(const Part& part, std::span<const Triangle> triangles, std::span<const Ray> rays,
+                             Query query) {
   std::vector<GnRayCounters> counters;
   if (query == Query::kEvery) {
-    for (const Ray& ray : rays) counters.push_back(count_every(tree.bvh, ray));
+    for (const Ray& ray : rays) counters.push_back(count_every(part.bvh, ray));
   } else {
-    counters = trace_reference(tree.bvh, triangles, rays, query == Query::kAny, tree.ranks).counters;
+    counters = trace_reference(part.bvh, triangles, rays, query == Query::kAny, part.ranks).counters;
   }
   std::vector<double> out;
   out.reserve(rays.size());
   for (const GnRayCounters& count : counters) out.push_back(cost_of(count));
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> ray_costs(const OrderedTree& tree, std::span<const Triangle> triangles,
+                              std::span<const Ray> rays, Query query) {
+  if (tree.local.empty()) return costs_in(part_of(tree, 0), triangles, rays, query);
+  std::vector<double> out(rays.size());
+  for_each_part(tree, rays, [&](std::size_t place, const std::vector<Ray>& own, const Places& places) {
+    const std::vector<double> costs = costs_in(part_of(tree, place), triangles, own, query);
+    const std::size_t looked_at = place == 0 ? tree.local.size() : place;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      out[places[i]] = costs[i] + kRegionCost * static_cast<double>(looked_at);
+  });
   return out;
 }
 

@@ -9,6 +9,7 @@
 
 #include "gnomon/shared/layout.h"
 #include "gnomon/tree/bvh.h"
+#include "gnomon/tree/regions.h"
 #include "gnomon/tree/trace_reference.h"
 
 namespace gnomon {
@@ -31,15 +32,28 @@ enum class Query : std::uint32_t {
 
 inline constexpr double kBoxCost = 1.0;
 inline constexpr double kTriangleCost = 1.2;
+inline constexpr double kRegionCost = 2.0;  // of a region looked at: two points against six planes
 
 // A tree, and what given rays make of its nodes.
 struct OrderedTree {
   Bvh bvh;
   std::vector<float> ranks{};    // for any hit (child_order.h); none: the nearer child goes first
   std::vector<float> weights{};  // how likely rays meet them, in any unit; none: as their areas say
+  // Trees over part of the triangles, for rays that are whole in the first of their regions that has them.
+  std::vector<RegionTree> local{};
 };
 
-// What each ray costs in the tree: kBoxCost a box tested, the root's not counted, kTriangleCost a triangle.
+// The rays by the tree that each is traced through: 0 the tree of all, 1 + i local tree i. Places of rays,
+// ascending.
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> rays_by_tree(const OrderedTree& tree,
+                                                                   std::span<const Ray> rays);
+
+// As trace_reference, each ray through its tree.
+[[nodiscard]] ReferenceTrace trace_ordered(const OrderedTree& tree, std::span<const Triangle> triangles,
+                                           std::span<const Ray> rays, bool any_hit);
+
+// What each ray costs in the tree: kBoxCost a box tested, the root's not counted, kTriangleCost a triangle,
+// kRegionCost a region looked at for it.
 // (Thesis program: NODE_COST, LEAF_COST.) kEvery tests no triangle for a hit, but counts it. Rays that are
 // not traceable cost nothing.
 [[nodiscard]] std::vector<double> ray_costs(const OrderedTree& tree, std::span<const Triangle> triangles,

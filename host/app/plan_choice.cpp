@@ -7,6 +7,7 @@
 #include "gnomon/compare/words.h"
 #include "numbers.h"
 #include "options.h"
+#include "plan_rays.h"
 
 namespace gnomon::app {
 namespace {
@@ -81,12 +82,11 @@ PlanOutcome no_plan(const PlanRequest& request, const std::string& reason) {
 
 PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Progress& progress) {
   if (!request.instead.empty()) return no_plan(request, request.instead + " says which tree");
-  if (request.name.starts_with("light") && !task.light_space) {
-    throw Error(
-        ErrorCode::kInvalidArgument,
-        "--plan " + request.name +
-            " is for trace and render through wide or packet, on a CPU: nothing else takes trees whose "
-            "boxes stand along the rays, and no file holds one");
+  if ((request.name.starts_with("light") || request.name == "local-rays") && !task.wide) {
+    throw Error(ErrorCode::kInvalidArgument,
+                "--plan " + request.name +
+                    " is for trace and render through wide or packet, on a CPU: nothing else takes trees "
+                    "whose boxes stand along the rays or that have local ones, and no file holds one");
   }
   PlanOutcome out;
   out.asked = request.name;
@@ -101,9 +101,11 @@ PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Pro
   const auto start = std::chrono::steady_clock::now();
   PlanOptions how;
   how.choice = request.name;
-  how.light_space = task.light_space;
+  how.light_space = task.wide;
+  how.local_trees = task.wide;
   how.packets = task.packets;
-  const std::vector<PlanRays> rays = task.draw();
+  std::vector<PlanRays> rays = task.draw();
+  if (task.wide) add_regions(rays, task.scene);
   out.plan = make_plan(task.scene.triangles, rays, how, device_builder(task.context), progress);
   out.chosen = choose_trees(*out.plan, rays, task.scene.triangles, task.plain.host, task.wanted, !by_name);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -115,12 +117,12 @@ bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour) {
   return device.is_cpu && device.loop_limit == 0;
 }
 
-bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour) {
+bool traces_wide(const cl::DeviceInfo& device, TraceFlavour flavour) {
   return has_slots(device, flavour) && flavour != TraceFlavour::kCompact;
 }
 
 bool takes_packets(const cl::DeviceInfo& device, TraceFlavour flavour) {
-  return takes_frames(device, flavour) && flavour != TraceFlavour::kWide;
+  return traces_wide(device, flavour) && flavour != TraceFlavour::kWide;
 }
 
 void adopt(TimedBuild& build, const PlanTask& task, const PlanTree& tree) {

@@ -55,8 +55,9 @@ struct PlanTask {
   // Rays to fit to and to judge by; asked for once it is clear that planning can pay.
   std::function<std::vector<PlanRays>()> draw;
   TreesWanted wanted = TreesWanted::kOneEach;
-  bool light_space = false;  // the tracer takes trees whose boxes stand along the rays
-  bool packets = false;      // and rays that run together in packets
+  // The tracer takes trees whose boxes stand along the rays, and trees with local ones.
+  bool wide = false;
+  bool packets = false;  // and rays that run together in packets
 };
 
 // Plans where that can pay, or must since a tree was asked for by name. With auto what is kept costs probes
@@ -69,8 +70,9 @@ struct PlanTask {
 // Whether a tracer of this flavour has slots, and so an order that can be learnt: the binary tree has none.
 [[nodiscard]] bool has_slots(const cl::DeviceInfo& device, TraceFlavour flavour);
 
-// Whether a tracer of this flavour takes trees whose boxes stand along the rays: wide or packet.
-[[nodiscard]] bool takes_frames(const cl::DeviceInfo& device, TraceFlavour flavour);
+// Whether a tracer of this flavour takes trees whose boxes stand along the rays, and trees with local ones:
+// wide or packet.
+[[nodiscard]] bool traces_wide(const cl::DeviceInfo& device, TraceFlavour flavour);
 
 // Whether it takes rays that run together in packets.
 [[nodiscard]] bool takes_packets(const cl::DeviceInfo& device, TraceFlavour flavour);

@@ -49,10 +49,12 @@ int run(const Options& options, Console& console) {
   options.plan.check();
   const cl::Context context = open_device(options.device);
   const Scene scene = load_scene(options.scene, console);
-  const std::vector<PlanRays> rays = rays_of(options, scene, context, console.progress());
+  std::vector<PlanRays> rays = rays_of(options, scene, context, console.progress());
   stop_if_interrupted();
   PlanOptions how = options.plan;
-  how.light_space = takes_frames(context.device(), TraceFlavour::kAuto);
+  how.light_space = traces_wide(context.device(), TraceFlavour::kAuto);
+  how.local_trees = how.light_space;
+  if (how.local_trees) add_regions(rays, scene);
   how.packets = takes_packets(context.device(), TraceFlavour::kAuto);
   const Plan plan = make_plan(scene.triangles, rays, how, device_builder(context), console.progress());
   stop_if_interrupted();

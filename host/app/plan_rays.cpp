@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gnomon/areas/areas_from_scene.h"
 #include "gnomon/compare/words.h"
 #include "gnomon/device/trace_device.h"
 #include "numbers.h"
@@ -29,6 +30,16 @@ std::string reason_of(const Decision& decision, const std::string& baseline) {
          compare::significant(kept->saving / kept->price) + " times what the tree takes to make";
 }
 
+// Regions that leave triangles out, and whether they have trees of their own.
+std::string local_trees(const Decision& decision) {
+  std::string text;
+  for (const LocalUse& use : decision.local) {
+    text += (text.empty() ? "  with trees of their own for " : "; ") + fixed(100.0 * use.share, 0) +
+            " % of the rays over " + compare::count_text(static_cast<double>(use.triangles)) + " triangles";
+  }
+  return text.empty() ? text : text + "\n";
+}
+
 }  // namespace
 
 const char* const kPlanHelp =
@@ -50,6 +61,9 @@ const char* const kPlanHelp =
     "alone\n"
     "  light-rays and then by sampled rays\n"
     "  best-order, best-rays  as sah-order and sah-rays, of best\n"
+    "  local-rays  sah-rays, and a tree of its own for rays that stay where few of the triangles are, in a "
+    "spot light's\n"
+    "             cone say; on CPUs alone\n"
     "All but sah and best have the learnt order for any hit. auto tries them on rays drawn apart, keeps one "
     "that is surely\n"
     "2 % cheaper than the baseline and repays its price over the rays to come, and else keeps the baseline. "
@@ -80,6 +94,13 @@ PlanRays rays_to_plan_for(const std::string& name, Query query, std::span<const 
   return out;
 }
 
+void add_regions(std::vector<PlanRays>& rays, const Scene& scene) {
+  const std::vector<InfluenceArea> regions = bounded_areas_of_lights(scene);
+  for (PlanRays& kind : rays) {
+    if (kind.query == Query::kAny) kind.regions = regions;
+  }
+}
+
 std::string plan_table(const Plan& plan) {
   const auto count_text = [](double count) {
     return (count < 0.0 ? "-" : "") + compare::count_text(std::fabs(count));
@@ -89,6 +110,7 @@ std::string plan_table(const Plan& plan) {
   for (const Decision& decision : plan.decisions) {
     text += decision.rays + " rays, " + (decision.query == Query::kAny ? "any hit" : "closest hit") + ": " +
             decision.kept + "\n  " + reason_of(decision, baseline) + "\n";
+    text += local_trees(decision);
     if (decision.trials.empty()) continue;
     Table table({"tree", "cost a ray", "of " + baseline, "+-", "probes", "verdict", "price", "saves"});
     table.add({baseline, fixed(decision.baseline_cost, 2), "1.000", "", std::to_string(decision.probes), "",

@@ -1,8 +1,18 @@
 #include "planned_tracers.h"
 
-#include <algorithm>
+#include "gnomon/device/join_wide.h"
 
 namespace gnomon::app {
+
+std::unique_ptr<DeviceWideBvh> wide_form(const cl::Context& context, const Scene& scene,
+                                         const DeviceBvh& tree, const PlanTree& kept, TraceFlavour flavour) {
+  const OrderedTree& own = kept.tree;
+  // The binary tree has no slots for an order to be of, and is not collapsed.
+  if (!has_slots(context.device(), flavour)) return nullptr;
+  if (own.ranks.empty() && own.weights.empty() && own.local.empty()) return nullptr;
+  return std::make_unique<DeviceWideBvh>(
+      collapse_with_regions(context, tree, scene.triangles, own.local, own.ranks, own.weights));
+}
 
 PlannedTracers::PlannedTracers(const cl::Context& context, const Scene& scene, const TimedBuild& plain,
                                const PlanOutcome& plan, const TraceOptions& how)
@@ -21,15 +31,9 @@ PlannedTracers::Ready PlannedTracers::ready(const cl::Context& context, const Sc
     return out;
   }
   out.own = std::make_unique<DeviceBvh>(upload_bvh(context, kept->tree.bvh, scene.triangles));
-  // The binary tree has no slots for an order to be of, and is not collapsed.
-  if ((kept->tree.ranks.empty() && kept->tree.weights.empty()) ||
-      !has_slots(context.device(), TraceFlavour::kAuto)) {
-    out.tracer = std::make_unique<Tracer>(context, *out.own, how);
-    return out;
-  }
-  out.wide = std::make_unique<DeviceWideBvh>(
-      collapse_device(context, *out.own, {}, nullptr, kept->tree.ranks, kept->tree.weights));
-  out.tracer = std::make_unique<Tracer>(context, *out.wide, how);
+  out.wide = wide_form(context, scene, *out.own, *kept, TraceFlavour::kAuto);
+  out.tracer = out.wide ? std::make_unique<Tracer>(context, *out.wide, how)
+                        : std::make_unique<Tracer>(context, *out.own, how);
   return out;
 }
 

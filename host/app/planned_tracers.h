@@ -8,6 +8,12 @@
 
 namespace gnomon::app {
 
+// What a tree of the plan has beside its boxes, an order or local trees, as the tracer of this flavour takes
+// it; null where the tree on the device is all there is to trace.
+[[nodiscard]] std::unique_ptr<DeviceWideBvh> wide_form(const cl::Context& context, const Scene& scene,
+                                                       const DeviceBvh& tree, const PlanTree& kept,
+                                                       TraceFlavour flavour);
+
 // Chosen for rays_of_picture's kinds in their order. Where the plan chose no other tree it is the plain one,
 // which must outlive this as context and scene must.
 class PlannedTracers {

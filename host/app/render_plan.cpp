@@ -19,7 +19,7 @@ PlanOutcome plan_picture(const PlanRequest& request, const RenderOptions& option
   const double most = request.expected != 0 ? static_cast<double>(request.expected) : kMostRaysOfPath * paths;
   const std::vector<Ray> seen = primary_rays(scene, 256, options.seed);
   PlanTask task{context, scene, plain, {{Query::kClosest, seen, most}}, "at most", {}};
-  task.light_space = takes_frames(context.device(), TraceFlavour::kAuto);
+  task.wide = traces_wide(context.device(), TraceFlavour::kAuto);
   if (request.name == "auto") {
     const Outlook outlook = outlook_of(plain.host, scene.triangles, task.to_come);
     if (!outlook.pays) return plan_for(request, task, progress);

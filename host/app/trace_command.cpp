@@ -11,6 +11,7 @@
 #include "numbers.h"
 #include "plan_choice.h"
 #include "plan_rays.h"
+#include "planned_tracers.h"
 #include "ray_batch.h"
 #include "scene_source.h"
 #include "trace_timing.h"
@@ -187,7 +188,7 @@ PlanTask plan_task(const Options& options, const cl::Context& context, const Sce
           counted,
           draw,
           TreesWanted::kOneEach,
-          takes_frames(context.device(), flavour_from(options.flavour)),
+          traces_wide(context.device(), flavour_from(options.flavour)),
           takes_packets(context.device(), flavour_from(options.flavour))};
 }
 
@@ -206,17 +207,13 @@ int run(const Options& options, Console& console) {
   const PlanTask task = plan_task(options, context, scene, build, rays, any_hit, console.progress());
   const PlanOutcome planned = plan_for(options.plan, task, console.progress());
   stop_if_interrupted();
-  std::span<const float> ranks;
-  std::span<const float> weights;
+  std::unique_ptr<DeviceWideBvh> wide;
   if (const PlanTree* const kept = planned.tree(0)) {
     adopt(build, task, *kept);
-    if (has_slots(context.device(), flavour_from(options.flavour))) {
-      ranks = kept->tree.ranks;
-      weights = kept->tree.weights;
-    }
+    wide = wide_form(context, scene, build.tree, *kept, flavour_from(options.flavour));
   }
   const TimedTrace trace = trace_timed(context, build.tree, rays, any_hit, how_to_trace(options, scene),
-                                       options.repeat, console.progress(), ranks, weights);
+                                       options.repeat, console.progress(), wide.get());
   stop_if_interrupted();
   if (!options.rays_out.empty()) write_rays(options.rays_out, rays);
   if (!options.hits_out.empty()) write_hits(options.hits_out, trace.hits);

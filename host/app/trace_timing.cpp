@@ -35,13 +35,10 @@ void count_work(TimedTrace& timed, const TraceResult& counted) {
 
 TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree, std::span<const Ray> rays,
                        bool any_hit, const TraceOptions& how, std::uint64_t repeat, const Progress& progress,
-                       std::span<const float> slot_keys, std::span<const float> weights) {
+                       const DeviceWideBvh* wide) {
   TraceOptions options = how;
-  const bool own = !slot_keys.empty() || !weights.empty();
-  const DeviceWideBvh collapsed =
-      own ? collapse_device(context, tree, {}, nullptr, slot_keys, weights) : DeviceWideBvh{};
   const auto tracer_of = [&] {
-    return own ? Tracer(context, collapsed, options) : Tracer(context, tree, options);
+    return wide != nullptr ? Tracer(context, *wide, options) : Tracer(context, tree, options);
   };
   const Tracer tracer = tracer_of();
   TimedTrace timed;

@@ -26,12 +26,11 @@ struct TimedTrace {
   double triangles_per_ray = 0.0;
 };
 
-// `how`: flavour and accuracy. One pass to warm up, `repeat` timed ones, one that counts. slot_keys: of a
-// wide tree (gnomon/tree/wide.h). Throws as Tracer and collapse_device.
+// `how`: flavour and accuracy. One pass to warm up, `repeat` timed ones, one that counts. wide: traced
+// instead of `tree` where there is one. Throws as Tracer.
 [[nodiscard]] TimedTrace trace_timed(const cl::Context& context, const DeviceBvh& tree,
                                      std::span<const Ray> rays, bool any_hit, const TraceOptions& how,
                                      std::uint64_t repeat, const Progress& progress,
-                                     std::span<const float> slot_keys = {},
-                                     std::span<const float> weights = {});
+                                     const DeviceWideBvh* wide = nullptr);
 
 }  // namespace gnomon::app

@@ -24,7 +24,7 @@ class OwnEntrant : public Entrant {
     host_.reset();
     report_ = {};
     DeviceBvh tree = build_device(context_, scene_.triangles, method_.build, &report_, progress);
-    traced_.emplace(context_, std::move(tree), method_.tracing, std::span<const float>(), &report_);
+    traced_.emplace(context_, std::move(tree), method_.tracing, &report_);
   }
 
   void trace(const Batch& batch) override { traced_->trace(batch); }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "gnomon/areas/area_rays.h"
+#include "gnomon/areas/areas_from_scene.h"
 #include "gnomon/compare/traced_tree.h"
 
 namespace gnomon::compare {
@@ -26,12 +27,11 @@ class PlanEntrant : public Entrant {
     if (rays.empty())
       throw Error(ErrorCode::kInvalidArgument, "the scene has no rays of these kinds to plan for");
     PlanOptions how;
-    how.light_space = traces_wide(context_.device()) && context_.device().loop_limit == 0;
+    how.light_space = traces_wide(context_.device());
     how.packets = how.light_space;
+    how.local_trees = how.light_space;
     plan_ = make_plan(scene_.triangles, rays, how, builder_, progress);
-    for (const PlanTree& kept : plan_.trees)
-      trees_.emplace_back(context_, upload_bvh(context_, kept.tree.bvh, scene_.triangles),
-                          TracedTree::Options{}, kept.tree.ranks, nullptr, kept.tree.weights);
+    for (const PlanTree& kept : plan_.trees) trees_.emplace_back(context_, kept.tree, scene_.triangles);
   }
 
   void trace(const Batch& batch) override { tree_of(batch.kind).trace(batch); }
@@ -108,6 +108,7 @@ RaysToPlan drawn_for(const Scene& scene, const PlanSource& source) {
       rays.name = kind;
       rays.query = is_any_hit(kind) ? Query::kAny : Query::kClosest;
       rays.expected = kPlannedRays;
+      if (rays.query == Query::kAny) rays.regions = bounded_areas_of_lights(scene);
       if (const auto known = ray_kind_from(kind)) rays.together = run_together(*known, scene);
       rays.fit = draw_rays(scene, closest, kind, kDrawnRays, source.seed + 1);
       rays.probe = draw_rays(scene, closest, kind, kDrawnRays, source.seed + 2);
@@ -134,6 +135,7 @@ RaysToPlan planned_for(const RaysOf& rays) {
     out.expected = kPlannedRays;
     out.fit = area_rays(rays.area, rays.measure, kDrawnRays, kFitSeed);
     out.probe = area_rays(rays.area, rays.measure, kDrawnRays, kFitSeed + 1);
+    out.regions = {rays.area};
     return std::vector<PlanRays>{out};
   };
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gnomon/cl/launch.h"
+#include "gnomon/device/join_wide.h"
 
 namespace gnomon::compare {
 
@@ -11,9 +12,23 @@ bool traces_wide(const cl::DeviceInfo& device) {
 }
 
 TracedTree::TracedTree(const cl::Context& context, DeviceBvh tree, const Options& options,
-                       std::span<const float> slot_keys, BuildReport* report, std::span<const float> weights)
+                       BuildReport* report)
     : context_(context), wide_flavour_(traces_wide(context.device())), tree_(std::move(tree)) {
-  if (wide_flavour_) wide_ = collapse_device(context_, tree_, {}, report, slot_keys, weights);
+  if (wide_flavour_) wide_ = collapse_device(context_, tree_, {}, report);
+  set_up(options);
+}
+
+TracedTree::TracedTree(const cl::Context& context, const OrderedTree& tree,
+                       std::span<const Triangle> triangles)
+    : context_(context),
+      wide_flavour_(traces_wide(context.device())),
+      tree_(upload_bvh(context, tree.bvh, triangles)) {
+  if (wide_flavour_)
+    wide_ = collapse_with_regions(context_, tree_, triangles, tree.local, tree.ranks, tree.weights);
+  set_up({});
+}
+
+void TracedTree::set_up(const Options& options) {
   TraceOptions how;
   how.accuracy = options.accuracy;
   how.portable = options.portable;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gnomon/compare/method.h"
+#include "gnomon/plan/ray_sample.h"
 
 namespace gnomon::compare {
 
@@ -22,11 +23,12 @@ class TracedTree {
     bool portable = false;  // OpenCL C alone, without the device compiler's own instructions
   };
 
-  // slot_keys, weights: for the wide tree (gnomon/tree/wide.h). Collapsing's stages go to `report`. The
-  // context must outlive it. Throws Error as collapse_device and Tracer do.
+  // Collapsing's stages go to `report`. The context must outlive it. Throws Error as collapse_device and
+  // Tracer do.
   TracedTree(const cl::Context& context, DeviceBvh tree, const Options& options,
-             std::span<const float> slot_keys = {}, BuildReport* report = nullptr,
-             std::span<const float> weights = {});
+             BuildReport* report = nullptr);
+  // A plan's, with what wide trees take of it.
+  TracedTree(const cl::Context& context, const OrderedTree& tree, std::span<const Triangle> triangles);
 
   void trace(const Batch& batch) const;
   [[nodiscard]] Answers answers(const Batch& batch) const;
@@ -43,6 +45,7 @@ class TracedTree {
   void forget_tree();
 
  private:
+  void set_up(const Options& options);
   [[nodiscard]] std::unique_ptr<Tracer> make_tracer(const TraceOptions& options) const;
   [[nodiscard]] const Tracer& counter();
 

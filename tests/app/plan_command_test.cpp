@@ -94,6 +94,34 @@ TEST_CASE(
   }
 }
 
+TEST_CASE(
+    "trees of spot lights' cones are kept where they are traced, with the same hits, and refused elsewhere") {
+  const std::vector<std::string> plain{"trace", "gen:crowd:20k", "--rays", "shadow", "--count",
+                                       "4k",    "--repeat",      "1",      "--json"};
+  const json before = document_of(plain);
+  for (const std::string flavour : {"auto", "wide", "packet"}) {
+    CAPTURE(flavour);
+    auto local = plain;
+    local.insert(local.end(), {"--flavour", flavour, "--plan", "local-rays"});
+    const json after = document_of(local);
+    REQUIRE(after["plan"]["chosen"][0]["tree"] == "local-rays");
+    REQUIRE(after["plan"]["decisions"][0]["local"]["trees"].size() >= 1);
+    REQUIRE(after["plan"]["trees"].back()["local"].size() >= 1);
+    REQUIRE(after["hits"] == before["hits"]);
+  }
+  const auto words = run({"plan", "gen:crowd:20k", "--rays", "shadow", "--plan", "local-rays"});
+  REQUIRE(words.status == 0);
+  REQUIRE_THAT(words.out, Catch::Contains("trees of their own for"));
+  auto compact = plain;
+  compact.insert(compact.end(), {"--flavour", "compact", "--plan", "local-rays"});
+  for (const std::vector<std::string>& refused :
+       {compact, std::vector<std::string>{"build", "gen:crowd:20k", "--plan", "local-rays"}}) {
+    const auto answer = run(refused);
+    REQUIRE(answer.status != 0);
+    REQUIRE_THAT(answer.err, Catch::Contains("local-rays") && Catch::Contains("wide or packet"));
+  }
+}
+
 TEST_CASE("trees of parts are planned with where they pay, traced by every flavour, kept and read again") {
   const std::string city = "gen:city:30k";
   for (const std::string kind : {"bounce", "shadow"}) {

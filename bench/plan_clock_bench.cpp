@@ -50,6 +50,7 @@ class Bench {
     PlanOptions options;
     options.choice = choice;
     options.light_space = true;
+    options.local_trees = true;
     options.packets = true;
     double built = 0.0;
     const Progress watch = [&](std::string_view stage, double) {
@@ -64,8 +65,7 @@ class Bench {
   }
 
   void run_case(const AwareSetUp& set_up, const RayCase& rays) const {
-    const PlanRays asked{rays.rays,        rays.query,         rays.draws.fit,
-                         rays.draws.probe, settings_.expected, rays.together};
+    const PlanRays asked = bench::to_plan_for(rays, settings_.expected);
     Clock clock, making;
     const Plan plan = timed(set_up, asked, "auto", clock);  // compiles what is not yet
     const std::string& kept = plan.decisions.front().kept;

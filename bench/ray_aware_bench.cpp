@@ -81,8 +81,7 @@ class Bench {
 
  private:
   void run_case(const RayCase& rays) {
-    const std::vector<PlanRays> asked{
-        {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, settings_.expected}};
+    const std::vector<PlanRays> asked{bench::to_plan_for(rays, settings_.expected)};
     const Plan plan = make_plan(set_up_.triangles, asked, settings_.plan, builder_.get());
     const Decision& decision = plan.decisions.front();
     // Of parts of triangles where spatial splits pay; else there is nothing like it in the pool.
@@ -92,7 +91,7 @@ class Bench {
     const Plan sah = make_plan(set_up_.triangles, asked, plain, builder_.get());
     const OrderedTree& baseline = sah.trees.front().tree;
     const std::vector<Hit> expected =
-        trace_reference(baseline.bvh, set_up_.triangles, rays.draws.measure, rays.query == Query::kAny).hits;
+        trace_ordered(baseline, set_up_.triangles, rays.draws.measure, rays.query == Query::kAny).hits;
     json start = {{"schema", 1},
                   {"bench", "ray_aware"},
                   {"commit", GNOMON_COMMIT},
@@ -112,6 +111,10 @@ class Bench {
       const Plan other = make_plan(set_up_.triangles, asked, options, builder_.get());
       const PlanTree& tree = other.trees[other.decisions.front().tree];
       json more = {{"build_units", tree.build_units}};
+      if (name == "local-rays") {
+        if (other.decisions.front().local.empty()) continue;
+        more.update(local_figures(other.decisions.front()));
+      }
       if (name.starts_with("light")) {
         more["obliquity"] = other.decisions.front().obliquity;
         more["framed_share"] = other.decisions.front().framed_share;
@@ -121,11 +124,9 @@ class Bench {
       }
       row(start, name, tree.tree, rays, expected, more);
       // The same tree, near child first: what the order alone brings.
-      if (rays.query == Query::kAny && name != "best" && !name.ends_with("-order"))
+      if (rays.query == Query::kAny && name != "best" && name != "local-rays" && !name.ends_with("-order"))
         row(start, name + " near", {tree.tree.bvh, {}}, rays, expected, json::object());
     }
-    if (!rays.members.empty() && rays.members.size() < set_up_.triangles.size())
-      local_rows(start, rays, asked, expected);
     row(start, "auto", plan.trees[decision.tree].tree, rays, expected,
         {{"baseline", own},
          {"kept", decision.kept},
@@ -138,20 +139,14 @@ class Bench {
     std::fflush(stdout);
   }
 
-  // Trees over the triangles that touch the rays' region alone, made as sah and sah-rays are: what a local
-  // tree brings its own rays, nothing being counted for others that go on to a tree of all.
-  void local_rows(const json& start, const RayCase& rays, const std::vector<PlanRays>& asked,
-                  const std::vector<Hit>& expected) {
-    std::vector<Triangle> own;
-    for (const std::uint32_t i : rays.members) own.push_back(set_up_.triangles[i]);
-    for (const char* const name : {"sah", "sah-rays"}) {
-      PlanOptions options = settings_.plan;
-      options.choice = name;
-      Plan plan = make_plan(own, asked, options, builder_.get());
-      OrderedTree& tree = plan.trees[plan.decisions.front().tree].tree;
-      for (std::uint32_t& primitive : tree.bvh.primitives) primitive = rays.members[primitive];
-      row(start, std::string("local ") + name, tree, rays, expected, {{"local_triangles", own.size()}});
+  static json local_figures(const Decision& decision) {
+    std::uint64_t triangles = 0;
+    double share = 0.0;
+    for (const LocalUse& use : decision.local) {
+      triangles += use.triangles;
+      share += use.share;
     }
+    return {{"local_trees", decision.local.size()}, {"local_triangles", triangles}, {"local_share", share}};
   }
 
   // Of a candidate that was tried.
@@ -166,8 +161,7 @@ class Bench {
   void row(json out, const std::string& tree, const OrderedTree& in, const RayCase& rays,
            const std::vector<Hit>& expected, const json& more) const {
     const bool any = rays.query == Query::kAny;
-    const std::vector<Hit> hits =
-        trace_reference(in.bvh, set_up_.triangles, rays.draws.measure, any, in.ranks).hits;
+    const std::vector<Hit> hits = trace_ordered(in, set_up_.triangles, rays.draws.measure, any).hits;
     std::uint64_t different = 0;
     std::uint64_t met = 0;
     for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -196,7 +190,7 @@ int main(int argc, char** argv) {
   CLI::App app("Trees for given rays beside the best surface-area tree, by counts.");
   Settings settings;
   const bench::SetUpCommands commands = bench::add_set_up_commands(app, settings.sources);
-  settings.plan.light_space = true;  // trees are traced by the reference
+  settings.plan.light_space = settings.plan.local_trees = true;  // trees are traced by the reference
   app.add_option("--query", settings.query, "closest, any or every alone");
   app.add_option("--rays", settings.sources.rays, "to measure on");
   app.add_option("--expected", settings.expected, "rays that trees must repay themselves over");

@@ -27,7 +27,6 @@ struct Case {
   std::string set_up;
   std::string rays;
   std::map<std::string, json> trees;
-  std::map<std::string, json> local;  // trees over a part of the triangles
   [[nodiscard]] bool has(const std::string& tree) const { return trees.count(tree) > 0; }
   [[nodiscard]] double cost(const std::string& tree) const { return trees.at(tree).at("cost").get<double>(); }
   // "sah", or "best" where spatial splits pay.
@@ -65,7 +64,7 @@ class Page {
       found.set_up = row.at("set_up");
       found.rays = rays;
       const std::string tree = row.at("tree");
-      (tree.starts_with("local ") ? found.local : found.trees)[tree] = row;
+      found.trees[tree] = row;
       different_ += row.at("different_hits").get<std::uint64_t>();
       commit_ = row.at("commit");
       rows_ += 1;
@@ -111,8 +110,9 @@ class Page {
         (any ? std::string(
                    " near child first | of the baseline in its own learnt order |\n|---|---|---|---|\n")
              : std::string("\n|---|---|\n"));
-    for (const char* const tree : {"sah-order", "sah-mix", "sah-rays", "sah-segments", "sah-seen",
-                                   "seen-rays", "mix", "mix-rays", "light-mix", "light-rays", "auto"}) {
+    for (const char* const tree :
+         {"sah-order", "sah-mix", "sah-rays", "sah-segments", "sah-seen", "seen-rays", "mix", "mix-rays",
+          "light-mix", "light-rays", "local-rays", "auto"}) {
       const std::vector<double> own = ratios(cases, tree, "sah");
       if (own.empty()) continue;
       out += std::string("| ") + tree + " |" + cell(own);
@@ -185,25 +185,27 @@ class Page {
     return out;
   }
 
-  // What trees over a region's own triangles would bring, were all rays in it.
   [[nodiscard]] std::string local_trees() const {
     std::string out =
-        "\n## Local trees\n\nOver the triangles alone that touch the region which all these rays are in, "
-        "where "
-        "that leaves any out. No plan makes them: other rays would have to go on to a tree of all "
-        "triangles.\n\n| rays | set-up | triangles | sah-rays | local sah | local sah-rays "
-        "|\n|---|---|---|---|---|---|\n";
+        "\n## Local trees\n\nOver the triangles that touch a region which a tenth of the rays or more are "
+        "in, "
+        "where that holds no more than half of all. Others go through the tree of all, which is the one of "
+        "sah-rays.\n\n| rays | set-up | triangles in local trees | rays within | sah-rays | local-rays | "
+        "kept "
+        "|\n|---|---|---|---|---|---|---|\n";
     for (const auto& [name, cases] : groups_) {
       for (const auto& [key, c] : cases) {
-        if (c.local.empty()) continue;
-        const json& row = c.local.at("local sah");
-        const auto ratio = [&c](const json& tree) {
-          return number(tree.at("cost").get<double>() / c.cost("sah"), " %.3f |");
+        if (!c.has("local-rays")) continue;
+        const json& row = c.trees.at("local-rays");
+        const auto of_sah = [&c](const char* tree) {
+          return number(c.cost(tree) / c.cost("sah"), " %.3f |");
         };
-        out += "| " + name + " | " + c.set_up + ", " + c.rays + " | " +
-               std::to_string(row.at("local_triangles").get<std::uint64_t>()) + " of " +
-               std::to_string(row.at("triangles").get<std::uint64_t>()) + " |" +
-               ratio(c.trees.at("sah-rays")) + ratio(row) + ratio(c.local.at("local sah-rays")) + "\n";
+        out.append("| ").append(name).append(" | ").append(c.set_up).append(", ").append(c.rays);
+        out += " | " + std::to_string(row.at("local_triangles").get<std::uint64_t>()) + " of " +
+               std::to_string(row.at("triangles").get<std::uint64_t>()) + ", in " +
+               std::to_string(row.at("local_trees").get<std::uint64_t>()) + " | " +
+               number(100.0 * row.at("local_share").get<double>(), "%.0f %%") + " |" + of_sah("sah-rays") +
+               of_sah("local-rays") + " " + c.trees.at("auto").at("kept").get<std::string>() + " |\n";
       }
     }
     return out;

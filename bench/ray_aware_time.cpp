@@ -15,6 +15,7 @@
 #include "contest.h"
 #include "device_builder.h"
 #include "gnomon/cl/launch.h"
+#include "gnomon/device/join_wide.h"
 #include "gnomon/device/trace_device.h"
 #include "gnomon/plan/choose.h"
 #include "gnomon/scene/generators.h"
@@ -79,7 +80,7 @@ class Entrant {
  public:
   Entrant(const cl::Context& context, std::string name, OrderedTree tree, std::span<const Triangle> triangles)
       : name_(std::move(name)), tree_(std::move(tree)), device_(upload_bvh(context, tree_.bvh, triangles)) {
-    wide_ = collapse_device(context, device_, {}, nullptr, tree_.ranks, tree_.weights);
+    wide_ = collapse_with_regions(context, device_, triangles, tree_.local, tree_.ranks, tree_.weights);
     tracer_ = std::make_unique<Tracer>(context, wide_);
     TraceOptions counting;
     counting.counters = true;
@@ -126,12 +127,12 @@ class Bench {
       // Every box on the way is not what a tracer does.
       if (rays.query == Query::kEvery) continue;
       cases.push_back(&rays);
-      asked.push_back(
-          {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, settings_.expected, rays.together});
+      asked.push_back(bench::to_plan_for(rays, settings_.expected));
     }
     PlanOptions options;
     options.keep_tried = true;
     options.light_space = true;
+    options.local_trees = true;
     options.packets = true;
     const Plan plan = make_plan(made.triangles, asked, options, app::device_builder(context_));
     for (std::size_t i = 0; i < cases.size(); ++i)
@@ -183,8 +184,7 @@ class Bench {
       const TraceResult counted = answers(i);
       const Work traced = mean_of(counted.counters);
       const Work wide = mean_of(entrants[i].alone(rays.draws.measure, any).counters);
-      const ReferenceTrace trace =
-          trace_reference(entrants[i].tree().bvh, set_up.triangles, some, any, entrants[i].tree().ranks);
+      const ReferenceTrace trace = trace_ordered(entrants[i].tree(), set_up.triangles, some, any);
       const Work binary = mean_of(trace.counters);
       std::vector<WideSteps> each;
       const WideBvh wide_tree = download_wide(context_, entrants[i].wide());

@@ -26,12 +26,12 @@ constexpr std::size_t kFewest = 256;  // fewer rays make no case
 using Draw = std::function<std::vector<Ray>(std::uint64_t count, std::uint64_t seed)>;
 
 void add_case(AwareSetUp& out, const std::string& rays, Query query, std::uint64_t count, const Draw& draw,
-              const std::vector<std::uint32_t>& members = {}) {
+              const std::vector<InfluenceArea>& regions = {}) {
   RayCase made{rays,
                query,
                {draw(kFitRays, kFitSeed), draw(kProbeRays, kProbeSeed), draw(count, kMeasureSeed)},
                false,
-               members};
+               regions};
   if (std::min({made.draws.fit.size(), made.draws.probe.size(), made.draws.measure.size()}) < kFewest) return;
   out.cases.push_back(std::move(made));
 }
@@ -92,6 +92,10 @@ std::vector<Ray> inside(const InfluenceArea& area, const std::vector<Ray>& rays,
 
 }  // namespace
 
+PlanRays to_plan_for(const RayCase& rays, double expected) {
+  return {rays.rays, rays.query, rays.draws.fit, rays.draws.probe, expected, rays.together, rays.regions};
+}
+
 AwareSetUp thesis_set_up(const SetUp& set_up, const Scene& scene, std::uint64_t rays) {
   const InfluenceArea& area = set_up.area;
   AwareSetUp out{"thesis", set_up.label(), {}, {}};
@@ -132,10 +136,12 @@ AwareSetUp generated_set_up(const std::string& name, const Scene& scene, std::ui
         sight.from(4 * count, seed, [&](const auto&... seen) { return shadow_rays(scene, seen...); }), count);
   };
   const std::size_t before = out.cases.size();
-  add_case(out, "shadow", Query::kAny, rays, shadow);
-  add_case(out, "lit", Query::kAny, rays, [&](std::uint64_t count, std::uint64_t seed) {
+  const std::vector<InfluenceArea> lit = bounded_areas_of_lights(scene);
+  add_case(out, "shadow", Query::kAny, rays, shadow, lit);
+  const Draw unstopped = [&](std::uint64_t count, std::uint64_t seed) {
     return thinned(sight.unstopped(shadow(4 * count, seed)), count);
-  });
+  };
+  add_case(out, "lit", Query::kAny, rays, unstopped, lit);
   for (std::size_t i = before; i < out.cases.size(); ++i)
     out.cases[i].together = run_together(RayKind::kShadow, scene);
   std::size_t lights = 0;
@@ -146,9 +152,8 @@ AwareSetUp generated_set_up(const std::string& name, const Scene& scene, std::ui
     const Draw of_light = [&](std::uint64_t count, std::uint64_t seed) {
       return area_rays(light.area, measure, count, seed);
     };
-    const std::vector<std::uint32_t> own = members(light.area, scene.triangles);
     for (const Query query : {Query::kClosest, Query::kEvery})
-      add_case(out, "light " + std::to_string(light.light), query, rays, of_light, own);
+      add_case(out, "light " + std::to_string(light.light), query, rays, of_light, {light.area});
   }
   return out;
 }

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "gnomon/areas/influence_area.h"
 #include "gnomon/measure/set_up.h"
-#include "gnomon/plan/ray_sample.h"
+#include "gnomon/plan/choose.h"
 #include "gnomon/scene/scene.h"
 
 namespace gnomon::bench {
@@ -24,10 +25,12 @@ struct RayCase {
   std::string rays;  // "area", "primary", "bounce", "shadow", "lit", "light 0"
   Query query = Query::kClosest;
   Draws draws;
-  bool together = false;  // PlanRays'
-  // The triangles that touch the region all rays are in; none where there is no such region.
-  std::vector<std::uint32_t> members{};
+  bool together = false;                 // PlanRays'
+  std::vector<InfluenceArea> regions{};  // PlanRays'
 };
+
+// What a plan is made for: with `draws`' first two.
+[[nodiscard]] PlanRays to_plan_for(const RayCase& rays, double expected);
 
 // Triangles and what is asked of them.
 struct AwareSetUp {

@@ -4,10 +4,10 @@
 #include <chrono>
 
 #include "device_builder.h"
+#include "gnomon/areas/areas_from_scene.h"
 #include "gnomon/compare/words.h"
 #include "numbers.h"
 #include "options.h"
-#include "plan_rays.h"
 
 namespace gnomon::app {
 namespace {
@@ -78,6 +78,13 @@ PlanOutcome no_plan(const PlanRequest& request, const std::string& reason) {
   if (request.instead.empty()) out.asked = request.name;
   out.reason = reason;
   return out;
+}
+
+void add_regions(std::vector<PlanRays>& rays, const Scene& scene) {
+  const std::vector<InfluenceArea> regions = bounded_areas_of_lights(scene);
+  for (PlanRays& kind : rays) {
+    if (kind.query == Query::kAny) kind.regions = regions;
+  }
 }
 
 PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task, const Progress& progress) {

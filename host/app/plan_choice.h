@@ -60,6 +60,9 @@ struct PlanTask {
   bool packets = false;  // and rays that run together in packets
 };
 
+// Tells rays that ask lights where those shine.
+void add_regions(std::vector<PlanRays>& rays, const Scene& scene);
+
 // Plans where that can pay, or must since a tree was asked for by name. With auto what is kept costs probes
 // less than the plain tree. One tree for all rays has no learnt order. Throws as make_plan.
 [[nodiscard]] PlanOutcome plan_for(const PlanRequest& request, const PlanTask& task,

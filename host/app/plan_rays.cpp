@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gnomon/areas/areas_from_scene.h"
 #include "gnomon/compare/words.h"
 #include "gnomon/device/trace_device.h"
 #include "numbers.h"
@@ -92,13 +91,6 @@ PlanRays rays_to_plan_for(const std::string& name, Query query, std::span<const 
   PlanRays out{name, query, {}, {}, expected};
   for (std::size_t i = 0; i < recorded.size(); ++i) (i % 2 == 0 ? out.fit : out.probe).push_back(recorded[i]);
   return out;
-}
-
-void add_regions(std::vector<PlanRays>& rays, const Scene& scene) {
-  const std::vector<InfluenceArea> regions = bounded_areas_of_lights(scene);
-  for (PlanRays& kind : rays) {
-    if (kind.query == Query::kAny) kind.regions = regions;
-  }
 }
 
 std::string plan_table(const Plan& plan) {

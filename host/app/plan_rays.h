@@ -22,9 +22,6 @@ namespace gnomon::app {
 [[nodiscard]] PlanRays rays_to_plan_for(const std::string& name, Query query, std::span<const Ray> recorded,
                                         double expected);
 
-// Tells rays that ask lights where those shine.
-void add_regions(std::vector<PlanRays>& rays, const Scene& scene);
-
 // The decisions, for people.
 [[nodiscard]] std::string plan_table(const Plan& plan);
 

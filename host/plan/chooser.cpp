@@ -234,6 +234,9 @@ bool Chooser::judge(const std::string& name, PlanPool::Entry candidate, double m
     trial.saving = options_.prices.saved * rays_.expected * (trial.standing.baseline - cost);
     const bool better = trial.standing.verdict == Verdict::kBetter;
     kept = better && trial.saving - trial.price > most_saved_;
+    // Trees beside another are to be surely better than that is alone.
+    if (!candidate.tree.tree.local.empty() && decision_.kept != base())
+      kept = kept && trial.standing.cost <= (1.0 - options_.race.least_gain) * decision_.cost;
     decision_.probes = std::max(decision_.probes, race.rays);
     if (kept || decision_.kept == base()) explain(race, trial, better, kept);
   }

@@ -2,6 +2,8 @@
 // are few or another option says which tree, and clear words for what cannot be.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "json_document.h"
@@ -95,27 +97,41 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "trees of spot lights' cones are kept where they are traced, with the same hits, and refused elsewhere") {
-  const std::vector<std::string> plain{"trace", "gen:crowd:20k", "--rays", "shadow", "--count",
-                                       "4k",    "--repeat",      "1",      "--json"};
-  const json before = document_of(plain);
-  for (const std::string flavour : {"auto", "wide", "packet"}) {
-    CAPTURE(flavour);
-    auto local = plain;
-    local.insert(local.end(), {"--flavour", flavour, "--plan", "local-rays"});
-    const json after = document_of(local);
-    REQUIRE(after["plan"]["chosen"][0]["tree"] == "local-rays");
-    REQUIRE(after["plan"]["decisions"][0]["local"]["trees"].size() >= 1);
-    REQUIRE(after["plan"]["trees"].back()["local"].size() >= 1);
-    REQUIRE(after["hits"] == before["hits"]);
+    "a tree of part of the scene is kept where it is traced, with the same hits, and refused elsewhere") {
+  // Down from one point onto a small part of the terrain.
+  std::vector<float> rays;
+  for (int i = 0; i < 4096; ++i) {
+    const float x = 0.24F * (static_cast<float>(i % 64) / 63.0F - 0.5F);
+    const float z = 0.24F * (static_cast<float>(i / 64) / 63.0F - 0.5F);
+    rays.insert(rays.end(), {0.0F, 700.0F, 0.0F, 0.0F, x, -1.0F, z, INFINITY});
   }
-  const auto words = run({"plan", "gen:crowd:20k", "--rays", "shadow", "--plan", "local-rays"});
+  const program::Folder folder;
+  const std::string file = folder.file("down.rays");
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(rays.data()), static_cast<std::streamsize>(4 * rays.size()));
+  const std::vector<std::string> plain{"trace", "gen:terrain:20k", "--rays-in", file, "--repeat",
+                                       "1",     "--json"};
+  const json before = document_of(plain);
+  REQUIRE(before["hits"] == 4096);
+  for (const std::string query : {"closest", "any"}) {
+    for (const std::string flavour : {"auto", "wide", "packet"}) {
+      CAPTURE(query, flavour);
+      auto local = plain;
+      local.insert(local.end(), {"--query", query, "--flavour", flavour, "--plan", "local-rays"});
+      const json after = document_of(local);
+      REQUIRE(after["plan"]["chosen"][0]["tree"] == "local-rays");
+      REQUIRE(after["plan"]["decisions"][0]["local"]["trees"][0]["triangles"] < 2000);
+      REQUIRE(after["plan"]["trees"].back()["local"].size() == 1);
+      REQUIRE(after["hits"] == before["hits"]);
+    }
+  }
+  const auto words = run({"plan", "gen:terrain:20k", "--rays-in", file, "--plan", "local-rays"});
   REQUIRE(words.status == 0);
   REQUIRE_THAT(words.out, Catch::Contains("trees of their own for"));
   auto compact = plain;
   compact.insert(compact.end(), {"--flavour", "compact", "--plan", "local-rays"});
   for (const std::vector<std::string>& refused :
-       {compact, std::vector<std::string>{"build", "gen:crowd:20k", "--plan", "local-rays"}}) {
+       {compact, std::vector<std::string>{"build", "gen:terrain:20k", "--plan", "local-rays"}}) {
     const auto answer = run(refused);
     REQUIRE(answer.status != 0);
     REQUIRE_THAT(answer.err, Catch::Contains("local-rays") && Catch::Contains("wide or packet"));

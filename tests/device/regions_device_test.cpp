@@ -158,6 +158,7 @@ TEST_CASE("a packet of which a part leaves the region is traced through the tree
   const auto triangles = gnomon::test::soup(1500, 532, 0.4F);
   gnomon::PlaneWindow window;
   window.direction = {0, -1, 0};
+  window.up = {0, 0, 1};
   // All rays begin in it and go on where it ends.
   window.point = {5, 14, 5};
   window.half_width = window.half_height = 6.0;
@@ -170,7 +171,7 @@ TEST_CASE("a packet of which a part leaves the region is traced through the tree
   window.half_height = 4.9;
   window.depth = 30.0;
   const RegionTrees beside = region_trees(triangles, {InfluenceArea::plane(window)});
-  const Rays rays = gnomon::test::sun_rays(1, {0, -1, 0}, 6.0F);
+  const Rays rays = gnomon::test::sun_rays(1, {0, -1, 0}, 1.0F);
   const std::size_t within = require_same_as_all(triangles, beside, rays);
   REQUIRE(within >= 16);
   REQUIRE(within < rays.size());

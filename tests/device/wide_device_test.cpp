@@ -162,17 +162,29 @@ TEST_CASE("faces in one plane seen edge-on, and faces next to it, are told apart
     CAPTURE(tilted);
     Triangles triangles;
     for (int i = 0; i < 60; ++i) {
-      const float y = static_cast<float>(random.below(3)) / 3.0F;
+      const float y = tilted ? static_cast<float>(random.below(3)) / 3.0F : 0.3F;
       const float z = random.between(-0.02F, 0.02F);
-      const float end = tilted && i % 2 == 0 ? std::nextafter(y, 9.0F) : y;
-      const float width = tilted ? 40.0F : random.between(0.01F, 0.1F);
-      triangles.push_back(gnomon::test::triangle({-400, y, z - width}, {-400, y, z + width},
-                                                 {random.between(500, 900), end, z}));
+      const float end = tilted && i % 2 == 0 ? y + 3e-6F * static_cast<float>(1 + i % 8) : y;
+      const float width = tilted ? 40.0F : std::exp2(random.between(-10, 3));
+      const float length = random.between(500, 900);
+      // The corner out of the plane is each of three in turn.
+      const std::array<std::array<float, 3>, 3> corners{
+          {{-400, y, z - width}, {-400, y, z + width}, {length, end, z}}};
+      const auto first = static_cast<std::size_t>(i / 2 % 3);
+      triangles.push_back(
+          gnomon::test::triangle(corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3]));
     }
     Rays rays;
-    for (int i = 0; i < 3000; ++i)
-      rays.push_back(ray({random.between(-3, 3), 1.5F, random.between(-0.01F, 0.01F)},
-                         {random.between(5, 90), -1.0F, random.between(-0.001F, 0.001F)}));
+    for (int i = 0; i < 3000; ++i) {
+      if (tilted) {
+        rays.push_back(ray({random.between(-3, 3), 1.5F, random.between(-0.01F, 0.01F)},
+                           {random.between(5, 90), -1.0F, random.between(-0.001F, 0.001F)}));
+        continue;
+      }
+      const float above = 0.3F * std::exp2(random.between(-12, 0));
+      rays.push_back(ray({random.between(-3, 3), 0.3F + above, random.between(-0.01F, 0.01F)},
+                         {random.between(0.5F, 20), -above, random.between(-0.01F, 0.01F)}));
+    }
     for (const std::uint32_t leaf : {1U, 8U})
       require_equal_flavours(triangles, rays, gnomon::test::lazy_leaves_of(leaf));
   }

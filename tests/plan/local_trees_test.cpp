@@ -243,6 +243,44 @@ TEST_CASE("no local tree is made for wide lamps, few rays, unknown regions, or w
       nlohmann::json::parse(to_json(plan))["decisions"][0]["local"]["least_share_of_triangles"].is_null());
 }
 
+TEST_CASE("a local tree is kept only where it is surely better than what is kept without") {
+  const Triangles triangles = gnomon::test::soup(6000, 745, 0.25F);
+  const PlanRays rays = kind_of({spot(5, 0.5)}, Query::kClosest);
+  PlanOptions options;
+  options.local_trees = true;
+  // It is some hundredths better.
+  for (const double least : {0.01, 0.05}) {
+    options.race.least_gain = least;
+    const Plan plan = make_plan(triangles, std::span(&rays, 1), options);
+    const Decision& decision = plan.decisions.front();
+    CAPTURE(least, to_json(plan));
+    REQUIRE(decision.trials.size() == 2);
+    REQUIRE(decision.trials[0].standing.verdict == gnomon::Verdict::kBetter);
+    REQUIRE(decision.trials[1].standing.cost < 0.99 * decision.trials[0].standing.cost);
+    REQUIRE(decision.kept == (least < 0.02 ? "local-rays" : "sah-rays"));
+    REQUIRE(decision.local.empty() == (decision.kept == "sah-rays"));
+  }
+}
+
+TEST_CASE("a ray in a tree with local ones costs what its own tree takes, and the regions looked at for it") {
+  const Triangles triangles = gnomon::test::soup(2000, 746, 0.25F);
+  const std::vector<InfluenceArea> lamps{spot(3, 0.2), spot(8, 0.2)};
+  OrderedTree tree{build_reference(triangles)};
+  tree.local = gnomon::test::region_trees(triangles, {grown_by(lamps[0], 1e-3), grown_by(lamps[1], 1e-3)});
+  const std::vector<Ray> rays = rays_of({lamps[0], lamps[1], spot(5, 1.5)}, 600, 747);
+  const auto parts = rays_by_tree(tree, rays);
+  const auto costs = ray_costs(tree, triangles, rays, Query::kClosest);
+  for (std::size_t i = 0; i < 3; ++i) {
+    REQUIRE(parts[i].size() > 100);
+    const OrderedTree own{i == 0 ? tree.bvh : tree.local[i - 1].bvh};
+    const double looked_at = i == 1 ? 1.0 : 2.0;
+    for (const std::uint32_t ray : parts[i]) {
+      const double alone = ray_costs(own, triangles, std::span(&rays[ray], 1), Query::kClosest)[0];
+      REQUIRE(costs[ray] == Approx(alone + gnomon::kRegionCost * looked_at));
+    }
+  }
+}
+
 TEST_CASE("local trees are made by name without a test, also for regions that have to be detected") {
   const Triangles triangles = gnomon::test::soup(3000, 750, 0.25F);
   PlanRays rays = kind_of({spot(5, 0.15)}, Query::kClosest, 1.0);

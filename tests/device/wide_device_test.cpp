@@ -190,6 +190,28 @@ TEST_CASE("faces in one plane seen edge-on, and faces next to it, are told apart
   }
 }
 
+TEST_CASE("of two faces one may leave the other's plane by any corner", "[unlimited]") {
+  gnomon::test::Random random(110);
+  Rays rays;
+  for (int i = 0; i < 400; ++i)
+    rays.push_back(ray({random.between(-3, 3), 1.5F, random.between(-0.01F, 0.01F)},
+                       {random.between(5, 90), -1.0F, random.between(-0.001F, 0.001F)}));
+  const auto face = [](std::size_t first, float end) {
+    const std::array<std::array<float, 3>, 3> corners{{{-400, 0.5F, -40}, {-400, 0.5F, 40}, {700, end, 0}}};
+    return gnomon::test::triangle(corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3]);
+  };
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    for (const float rise : {-3e-6F, -3e-7F, 3e-7F, 3e-6F}) {
+      for (const bool flat_first : {false, true}) {
+        CAPTURE(corner, rise, flat_first);
+        Triangles pair{face(0, 0.5F), face(corner, 0.5F + rise)};
+        if (!flat_first) std::swap(pair[0], pair[1]);
+        require_equal_flavours(pair, rays);
+      }
+    }
+  }
+}
+
 TEST_CASE("the flavours agree on ranges that end or begin next to a hit", "[unlimited]") {
   const auto triangles = gnomon::test::soup(1000, 106, 1.0F);
   const Rays rays = gnomon::test::random_rays(300, 107);
